@@ -1,0 +1,414 @@
+/* How much of the light one receiver sees, by looking at every micro-occluder of every layer: sections 4 and 5 of
+ * docs/numerics.md, after sections 3 and 4 of Schwarz and Stamminger, Bitmask Soft Shadows, 2007. Departures from the
+ * paper are the page's: exact microquad coverage, and a bias from the receiver's plane. */
+#include "reference_visibility.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* One sample of the chosen level. */
+typedef struct micro_sample {
+    double place[3]; /* u, v, g */
+    bool passes;     /* the bias test */
+    double q[2];     /* its back-projection, if it passes */
+} micro_sample;
+
+typedef struct evaluation {
+    const reference_map *map;
+    const reference_settings *settings;
+    const reference_receiver *receiver;
+    double raised[3]; /* (u, v, g') of the receiver */
+    uint32_t columns, rows, spacing;
+    micro_sample *samples;
+    uint32_t pattern_size;
+    reference_occlusion *out;
+} evaluation;
+
+uint32_t reference_pattern_size(softsh_pattern pattern)
+{
+    switch (pattern) {
+    case SOFTSH_PATTERN_8X8:
+        return 8;
+    case SOFTSH_PATTERN_32X32:
+        return 32;
+    case SOFTSH_PATTERN_DEFAULT:
+    case SOFTSH_PATTERN_16X16:
+    case SOFTSH_PATTERN_16X16_JITTERED:
+        break;
+    }
+    return 16;
+}
+
+void reference_pattern_sample(softsh_pattern pattern, uint32_t i, uint32_t j, double xy[2])
+{
+    xy[0] = i + 0.5;
+    xy[1] = j + 0.5;
+    if (pattern == SOFTSH_PATTERN_DEFAULT || pattern == SOFTSH_PATTERN_16X16_JITTERED) {
+        xy[0] = i + (j % 2 == 0 ? 0.75 : 0.25);
+        xy[1] = j + (i % 2 == 0 ? 0.25 : 0.75);
+    }
+}
+
+bool reference_pattern_counted(softsh_pattern pattern, bool directional, uint32_t i, uint32_t j)
+{
+    const double n = reference_pattern_size(pattern);
+    double xy[2];
+    reference_pattern_sample(pattern, i, j, xy);
+    const double s = 2.0 * xy[0] / n - 1.0, t = 2.0 * xy[1] / n - 1.0;
+    return !directional || s * s + t * t <= 1.0;
+}
+
+uint32_t reference_level(uint32_t extent, uint32_t budget)
+{
+    uint32_t level = 0;
+    while (budget != 0 && extent > (uint64_t)budget << level)
+        ++level;
+    return level;
+}
+
+static softsh_primitive primitive_of(const reference_settings *settings)
+{
+    return settings->primitive == SOFTSH_PRIMITIVE_DEFAULT ? SOFTSH_PRIMITIVE_MICROQUAD : settings->primitive;
+}
+
+static bool is_micropatch(const reference_settings *settings)
+{
+    const softsh_primitive primitive = primitive_of(settings);
+    return primitive == SOFTSH_PRIMITIVE_MICROPATCH || primitive == SOFTSH_PRIMITIVE_MICROPATCH_UNEXTENDED;
+}
+
+static bool is_nearest(const reference_settings *settings)
+{
+    return settings->aggregation == SOFTSH_AGGREGATION_NEAREST;
+}
+
+static double slope(const reference_receiver *receiver)
+{
+    return fabs(receiver->gradient[0]) + fabs(receiver->gradient[1]);
+}
+
+static double plane_at(const reference_receiver *receiver, const double uv[2])
+{
+    return receiver->uvg[2] + receiver->gradient[0] * (uv[0] - receiver->uvg[0]) +
+           receiver->gradient[1] * (uv[1] - receiver->uvg[1]);
+}
+
+double reference_raised_g(const reference_map *map, const reference_settings *settings,
+                          const reference_receiver *receiver)
+{
+    const double g = receiver->uvg[2], spacing = (double)(1u << settings->level);
+    if (receiver->override_bias) {
+        if (!map->perspective)
+            return g + receiver->bias;
+        return receiver->bias * g < 1.0 ? g / (1.0 - receiver->bias * g) : INFINITY;
+    }
+    if (!is_micropatch(settings) && is_nearest(settings))
+        return g + receiver->eta + slope(receiver) * 0.5 * (spacing - 1.0);
+    return g + receiver->eta;
+}
+
+static bool in_front_of_light(const reference_map *map, double g)
+{
+    return map->epsilon - map->delta * g > 0.0;
+}
+
+/* Section 5: place and depth of sample (x, y) of the level. */
+static void level_sample(const evaluation *e, const float *g, uint32_t x, uint32_t y, double place[3])
+{
+    const uint32_t width = e->map->width, height = e->map->height, spacing = e->spacing;
+    if (is_nearest(e->settings)) {
+        place[0] = (x + 0.5) * spacing;
+        place[1] = (y + 0.5) * spacing;
+        place[2] = -INFINITY;
+        for (uint32_t j = y * spacing; j < (y + 1) * spacing && j < height; ++j)
+            for (uint32_t i = x * spacing; i < (x + 1) * spacing && i < width; ++i)
+                place[2] = fmax(place[2], (double)g[(size_t)j * width + i]);
+    } else {
+        const uint32_t far_i = x * spacing + spacing / 2, far_j = y * spacing + spacing / 2;
+        const uint32_t i = far_i < width - 1 ? far_i : width - 1, j = far_j < height - 1 ? far_j : height - 1;
+        place[0] = i + 0.5;
+        place[1] = j + 0.5;
+        place[2] = (double)g[(size_t)j * width + i];
+    }
+}
+
+/* Section 3, bias. */
+static bool passes(const evaluation *e, const double place[3])
+{
+    if (!(place[2] > e->raised[2]) || !in_front_of_light(e->map, place[2]))
+        return false;
+    if (!is_micropatch(e->settings) || e->receiver->override_bias)
+        return true;
+    return !(fabs(place[2] - plane_at(e->receiver, place)) <= e->receiver->eta + slope(e->receiver) * 0.5 * e->spacing);
+}
+
+static void prepare_samples(evaluation *e, const float *g)
+{
+    for (uint32_t y = 0; y < e->rows; ++y) {
+        for (uint32_t x = 0; x < e->columns; ++x) {
+            micro_sample *sample = &e->samples[(size_t)y * e->columns + x];
+            level_sample(e, g, x, y, sample->place);
+            sample->passes = passes(e, sample->place);
+            if (sample->passes)
+                reference_map_backproject(e->map, e->raised, sample->place, sample->q);
+        }
+    }
+}
+
+static double to_sample(const evaluation *e, double q)
+{
+    return (q + 1.0) * 0.5 * e->pattern_size;
+}
+
+static void set_bit(reference_occlusion *out, uint32_t bit)
+{
+    out->mask[bit / 32] |= 1u << (bit % 32);
+}
+
+/* Samples of [x0, x1) x [y0, y1), given in q. */
+static void cover_rectangle(const evaluation *e, const double rectangle[4])
+{
+    const uint32_t n = e->pattern_size;
+    const double x0 = to_sample(e, rectangle[0]), y0 = to_sample(e, rectangle[1]);
+    const double x1 = to_sample(e, rectangle[2]), y1 = to_sample(e, rectangle[3]);
+    if (!(x1 > 0.0 && y1 > 0.0 && x0 < n && y0 < n))
+        return;
+    for (uint32_t j = 0; j < n; ++j) {
+        for (uint32_t i = 0; i < n; ++i) {
+            double xy[2];
+            reference_pattern_sample(e->settings->pattern, i, j, xy);
+            if (x0 <= xy[0] && xy[0] < x1 && y0 <= xy[1] && xy[1] < y1)
+                set_bit(e->out, j * n + i);
+        }
+    }
+}
+
+/* Samples inside a polygon by the crossing rule. */
+static void cover_quad(const evaluation *e, double q[4][2])
+{
+    const uint32_t n = e->pattern_size;
+    double corner[4][2], lo[2] = {INFINITY, INFINITY}, hi[2] = {-INFINITY, -INFINITY};
+    for (int k = 0; k < 4; ++k) {
+        for (int axis = 0; axis < 2; ++axis) {
+            corner[k][axis] = to_sample(e, q[k][axis]);
+            lo[axis] = fmin(lo[axis], corner[k][axis]);
+            hi[axis] = fmax(hi[axis], corner[k][axis]);
+        }
+    }
+    if (!(hi[0] > 0.0 && hi[1] > 0.0 && lo[0] < n && lo[1] < n))
+        return;
+    for (uint32_t j = 0; j < n; ++j) {
+        for (uint32_t i = 0; i < n; ++i) {
+            double xy[2];
+            bool covered = false;
+            reference_pattern_sample(e->settings->pattern, i, j, xy);
+            for (int k = 0; k < 4; ++k) {
+                const double *a = corner[k], *b = corner[(k + 1) % 4];
+                if (a[1] > b[1]) {
+                    a = corner[(k + 1) % 4];
+                    b = corner[k];
+                }
+                if (!(a[1] <= xy[1] && xy[1] < b[1]))
+                    continue;
+                const double crossing = a[0] + (xy[1] - a[1]) * (b[0] - a[0]) / (b[1] - a[1]);
+                covered ^= crossing > xy[0];
+            }
+            if (covered)
+                set_bit(e->out, j * n + i);
+        }
+    }
+}
+
+/* Half the side of the square that stands for the light in area computations. */
+static double area_side(const evaluation *e)
+{
+    return e->map->directional ? 0.5 * sqrt(acos(-1.0)) : 1.0;
+}
+
+static double clamp(double x, double limit)
+{
+    return fmin(fmax(x, -limit), limit);
+}
+
+static void add_rectangle_area(const evaluation *e, const double rectangle[4])
+{
+    const double side = area_side(e);
+    const double width = clamp(rectangle[2], side) - clamp(rectangle[0], side);
+    const double height = clamp(rectangle[3], side) - clamp(rectangle[1], side);
+    e->out->area += width * height / (4.0 * side * side);
+}
+
+static void add_quad_area(const evaluation *e, double q[4][2])
+{
+    const double side = area_side(e);
+    double twice = 0.0;
+    for (int k = 0; k < 4; ++k) {
+        const double *a = q[k], *b = q[(k + 1) % 4];
+        twice += clamp(a[0], side) * clamp(b[1], side) - clamp(b[0], side) * clamp(a[1], side);
+    }
+    e->out->area += 0.5 * fabs(twice) / (4.0 * side * side);
+}
+
+/* The back-projection of a patch's border at offset (du, dv) from its place. */
+static void backproject_border(const evaluation *e, const micro_sample *sample, double du, double dv, double q[2])
+{
+    const double border[3] = {sample->place[0] + du, sample->place[1] + dv, sample->place[2]};
+    reference_map_backproject(e->map, e->raised, border, q);
+}
+
+static void add_micropatch(const evaluation *e, uint32_t x, uint32_t y)
+{
+    const micro_sample *sample = &e->samples[(size_t)y * e->columns + x];
+    const double half = 0.5 * e->spacing;
+    double rectangle[4];
+    if (!sample->passes)
+        return;
+    backproject_border(e, sample, -half, -half, &rectangle[0]);
+    backproject_border(e, sample, half, half, &rectangle[2]);
+    if (primitive_of(e->settings) == SOFTSH_PRIMITIVE_MICROPATCH) {
+        double q[2];
+        if (x > 0 && sample[-1].passes) {
+            backproject_border(e, sample - 1, half, 0.0, q);
+            rectangle[0] = fmin(rectangle[0], q[0]);
+        }
+        if (y > 0 && (sample - e->columns)->passes) {
+            backproject_border(e, sample - e->columns, 0.0, half, q);
+            rectangle[1] = fmin(rectangle[1], q[1]);
+        }
+    }
+    cover_rectangle(e, rectangle);
+    add_rectangle_area(e, rectangle);
+}
+
+static void add_microquad(const evaluation *e, uint32_t x, uint32_t y)
+{
+    const micro_sample *first = &e->samples[(size_t)y * e->columns + x];
+    const micro_sample *const corners[4] = {first, first + 1, first + 1 + e->columns, first + e->columns};
+    double q[4][2];
+    for (int k = 0; k < 4; ++k) {
+        if (!corners[k]->passes)
+            return;
+        memcpy(q[k], corners[k]->q, sizeof(q[k]));
+    }
+    if (primitive_of(e->settings) == SOFTSH_PRIMITIVE_MICROQUAD) {
+        cover_quad(e, q);
+    } else {
+        const double left = 0.5 * (q[0][0] + q[3][0]), right = 0.5 * (q[1][0] + q[2][0]);
+        const double bottom = 0.5 * (q[0][1] + q[1][1]), top = 0.5 * (q[3][1] + q[2][1]);
+        const double rectangle[4] = {fmin(left, right), fmin(bottom, top), fmax(left, right), fmax(bottom, top)};
+        cover_rectangle(e, rectangle);
+    }
+    add_quad_area(e, q);
+}
+
+/* Occlusion by one layer into e->out, whose mask and area are zero. */
+static void evaluate_layer(evaluation *e, const float *g)
+{
+    const bool patches = is_micropatch(e->settings);
+    prepare_samples(e, g);
+    for (uint32_t y = 0; y + (patches ? 0 : 1) < e->rows; ++y)
+        for (uint32_t x = 0; x + (patches ? 0 : 1) < e->columns; ++x)
+            if (patches)
+                add_micropatch(e, x, y);
+            else
+                add_microquad(e, x, y);
+}
+
+/* A light without size: the one texel the receiver lies in decides. */
+static bool hard_shadow(const reference_map *map, const float *g, const reference_receiver *receiver, double raised)
+{
+    double cell[2];
+    const uint32_t size[2] = {map->width, map->height};
+    for (int i = 0; i < 2; ++i)
+        cell[i] = fmin(fmax(floor(receiver->uvg[i]), 0.0), size[i] - 1.0);
+    const double center[2] = {cell[0] + 0.5, cell[1] + 0.5};
+    const double occluder = (double)g[(size_t)cell[1] * map->width + (size_t)cell[0]];
+    if (!in_front_of_light(map, occluder))
+        return false;
+    if (receiver->override_bias)
+        return occluder > raised;
+    return occluder > plane_at(receiver, center) + receiver->eta + 0.5 * slope(receiver);
+}
+
+static void set_all(reference_occlusion *out, uint32_t pattern_size)
+{
+    for (uint32_t bit = 0; bit < pattern_size * pattern_size; ++bit)
+        set_bit(out, bit);
+    out->area = 1.0;
+}
+
+/* Drops the samples beside the light and counts. */
+static void count(const reference_map *map, const reference_settings *settings, reference_occlusion *out)
+{
+    const uint32_t n = reference_pattern_size(settings->pattern);
+    out->counted = out->occluded = 0;
+    for (uint32_t j = 0; j < n; ++j) {
+        for (uint32_t i = 0; i < n; ++i) {
+            const uint32_t word = (j * n + i) / 32, bit = 1u << (j * n + i) % 32;
+            if (!reference_pattern_counted(settings->pattern, map->directional, i, j)) {
+                out->mask[word] &= ~bit;
+                continue;
+            }
+            ++out->counted;
+            if (out->mask[word] & bit)
+                ++out->occluded;
+        }
+    }
+    out->bitmask = (double)out->occluded / out->counted;
+}
+
+static void merge_layer(const reference_settings *settings, const reference_occlusion *layer, reference_occlusion *out)
+{
+    if (settings->merge == SOFTSH_MERGE_MAXIMUM) {
+        const double area = fmax(out->area, layer->area);
+        if (layer->occluded > out->occluded)
+            *out = *layer;
+        out->area = area;
+    } else {
+        for (size_t word = 0; word < sizeof(out->mask) / sizeof(out->mask[0]); ++word)
+            out->mask[word] |= layer->mask[word];
+        out->area += layer->area;
+    }
+}
+
+bool reference_visibility(const reference_map *map, const float *const *layers, uint32_t layer_count,
+                          const reference_settings *settings, const reference_receiver *receiver,
+                          reference_occlusion *out)
+{
+    memset(out, 0, sizeof(*out));
+    const uint32_t n = reference_pattern_size(settings->pattern);
+    if (primitive_of(settings) > SOFTSH_PRIMITIVE_MICROQUAD_RECTANGLE || settings->level > 14 ||
+        (is_micropatch(settings) && !map->point && !map->axis_aligned))
+        return false;
+    if (receiver->state == REFERENCE_RECEIVER_AWAY)
+        set_all(out, n);
+    if (receiver->state != REFERENCE_RECEIVER_ACTIVE) {
+        count(map, settings, out);
+        return true;
+    }
+
+    const uint32_t spacing = 1u << settings->level;
+    evaluation e = {.map = map, .settings = settings, .receiver = receiver, .spacing = spacing, .pattern_size = n};
+    e.columns = (map->width + spacing - 1) / spacing;
+    e.rows = (map->height + spacing - 1) / spacing;
+    memcpy(e.raised, receiver->uvg, sizeof(e.raised));
+    e.raised[2] = reference_raised_g(map, settings, receiver);
+    e.samples = calloc((size_t)e.columns * e.rows, sizeof(*e.samples));
+    if (!e.samples)
+        return false;
+    for (uint32_t i = 0; i < layer_count; ++i) {
+        reference_occlusion layer;
+        memset(&layer, 0, sizeof(layer));
+        e.out = &layer;
+        if (!map->point)
+            evaluate_layer(&e, layers[i]);
+        else if (hard_shadow(map, layers[i], receiver, e.raised[2]))
+            set_all(&layer, n);
+        count(map, settings, &layer);
+        merge_layer(settings, &layer, out);
+    }
+    free(e.samples);
+    count(map, settings, out);
+    return true;
+}
