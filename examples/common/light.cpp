@@ -78,12 +78,13 @@ Frustum light_frustum(const Light &light, double fov, const DepthRange &range, d
             range.reversed};
 }
 
-Frustum directional_frustum(const Light &light, const glm::dvec3 &centre, double radius, bool reversed)
+Frustum directional_frustum(const Light &light, const glm::dvec3 &centre, double half_width, const DepthRange &range,
+                            double before)
 {
     const glm::dvec3 forward = glm::normalize(light.direction);
     const glm::dvec3 up = std::fabs(forward.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
-    const glm::dmat4 view = look_at(centre - forward * (2.0 * radius), centre, up);
-    return {view, orthographic(radius, radius, {0.5 * radius, 3.5 * radius, reversed}), reversed};
+    const glm::dmat4 view = look_at(centre - forward * before, centre, up);
+    return {view, orthographic(half_width, half_width, range), range.reversed};
 }
 
 Light sub_light(const Light &light, uint32_t grid_u, uint32_t grid_v, uint32_t i, uint32_t j)

@@ -42,8 +42,10 @@ glm::dmat4 orthographic(double half_width, double half_height, const DepthRange 
 // are not zero.
 Frustum light_frustum(const Light &light, double fov, const DepthRange &range, double behind = 0.0);
 
-// Orthographic, along a directional light, around a sphere.
-Frustum directional_frustum(const Light &light, const glm::dvec3 &centre, double radius, bool reversed);
+// Orthographic, square, along a directional light; its axis runs through `centre`, `before` world units after the point
+// that range counts from.
+Frustum directional_frustum(const Light &light, const glm::dvec3 &centre, double half_width, const DepthRange &range,
+                            double before);
 
 // The part (i, j) of a rectangle split into grid x grid parts; (0, 0) is at -half_u, -half_v.
 Light sub_light(const Light &light, uint32_t grid_u, uint32_t grid_v, uint32_t i, uint32_t j);
