@@ -1,0 +1,82 @@
+/* The techniques the library is compared with, as Vulkan compute: `copy` (the floor: reads the depth, writes 1),
+ * `hard`, `pcf` and `pcss`. Each is one dispatch, as fast and as accurate as we can make it without changing what it
+ * is: no noise, no temporal input, the light's true extents, the receiver's plane at every tap.
+ *
+ * Peers read the same depth buffers as the library and share its conventions (include/softshadow/types.h). A peer is
+ * used by one thread at a time. */
+#ifndef PEERS_H
+#define PEERS_H
+
+#include "gpu.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum peer_kind { PEER_COPY, PEER_HARD, PEER_PCF, PEER_PCSS, PEER_KIND_COUNT } peer_kind;
+
+/* Zero is the default everywhere. */
+typedef struct peer_settings {
+    uint32_t blocker_taps; /* pcss: 0 means 16; at most 1024 */
+    uint32_t filter_taps;  /* pcf, pcss: 0 means 32; at most 1024 */
+    /* pcf: the kernel's size at the receiver over the light's size; 0 means 0.25, the penumbra of a blocker at 80 % of
+     * the way from the light. For a directional light: the blocker's distance in world units instead; 0 means a
+     * twentieth of the map's depth range. */
+    double pcf_kernel;
+    /* pcss: distance along the map's axis, from the projection centre (plane), of the nearest blocker there can be, in
+     * world units; 0 means the map's near plane. The smaller the search, the better its taps. */
+    double nearest_blocker;
+} peer_settings;
+
+typedef struct peer_info {
+    peer_kind kind;
+    peer_settings settings;
+    bool directional;        /* the light is a disc of directions, not a rectangle */
+    uint32_t max_recordings; /* recordings that may be pending at once; 0 means 4 */
+    VkPipelineCache cache;   /* may be VK_NULL_HANDLE */
+} peer_info;
+
+typedef struct peer_depth {
+    VkImageView view;     /* depth aspect, or colour of an R32F image; usage SAMPLED */
+    VkImageLayout layout; /* during the dispatch */
+    VkFormat format;      /* tells the precision */
+    uint32_t width, height;
+    double view_matrix[16]; /* column-major, world -> view -> Vulkan clip space */
+    double projection[16];
+} peer_depth;
+
+typedef struct peer_light {
+    double center[3], half_u[3], half_v[3]; /* rectangle, parallel to the map's image plane */
+    double direction[3], angular_radius;    /* directional: the way the light travels, radians */
+} peer_light;
+
+typedef struct peer_inputs {
+    peer_depth camera; /* its size is the render size */
+    peer_depth map;    /* projection centre on the light's plane, or behind it with the near plane on it or beyond;
+                          orthographic with a directional light. Not read by `copy`, but must be given */
+    peer_light light;
+    VkImageView visibility; /* storage image of the camera's size, R8, R16, R16F or R32F, layout GENERAL */
+} peer_inputs;
+
+typedef struct peer peer;
+
+/* "copy", "hard", "pcf", "pcss"; also the pass's name. */
+const char *peer_name(peer_kind kind);
+/* PEER_KIND_COUNT if there is none of that name. */
+peer_kind peer_find(const char *name);
+
+/* Compiles the pipeline. On failure *out is NULL and g->error says why. */
+bool peer_create(gpu *g, const peer_info *info, peer **out);
+/* NULL is allowed; recordings must have finished. */
+void peer_destroy(gpu *g, peer *p);
+
+/* Records one dispatch. Entry: both depths visible to COMPUTE_SHADER / SHADER_READ, earlier accesses of the visibility
+ * image made available to COMPUTE_SHADER / SHADER_WRITE. Exit: the visibility image last written there. Clobbers the
+ * compute pipeline, descriptor set 0 and the push constants. On failure nothing is recorded and g->error says why. */
+bool peer_record(gpu *g, peer *p, VkCommandBuffer cmd, const peer_inputs *inputs);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
