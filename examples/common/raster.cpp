@@ -163,12 +163,12 @@ void Rasteriser::draw(VkCommandBuffer cmd, const PipelineKey &key, VkFramebuffer
     constants.eye = glm::vec4(find_eye(frustum, origin));
     constants.depth_sign = frustum.reversed ? -1.0f : 1.0f;
     // A fragment's depth is not yet rounded to the format; the first layer's is. (A little over half a step, for the
-    // rounding of that very rounding.)
+    // rounding that comes before.)
     if (first_layer && first_layer->image.format == VK_FORMAT_D16_UNORM)
-        constants.depth_step = 0.501f / 65535.0f;
+        constants.depth_step = 0.51f / 65535.0f;
     else if (first_layer && first_layer->image.format != VK_FORMAT_D32_SFLOAT &&
              first_layer->image.format != VK_FORMAT_D32_SFLOAT_S8_UINT)
-        constants.depth_step = 0.501f / 16777215.0f;
+        constants.depth_step = 1.0f / 16777215.0f;
 
     const VkViewport viewport = {0.0f, 0.0f, static_cast<float>(width), static_cast<float>(height), 0.0f, 1.0f};
     const VkBuffer buffers[] = {positions_.buffer, normals_.buffer, colours_.buffer};
