@@ -1,0 +1,70 @@
+/* How visibility is estimated: the techniques and their settings.
+ *
+ * Leave everything zero (or give no settings at all) for the best the library does by default. The other values exist
+ * for people who compare techniques; docs/techniques.md says which paper each comes from and where the code departs. */
+#ifndef SOFTSHADOW_TECHNIQUES_H
+#define SOFTSHADOW_TECHNIQUES_H
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum softsh_technique {
+    SOFTSH_TECHNIQUE_AUTO = 0,    /* ignores all other settings */
+    SOFTSH_TECHNIQUE_AREA = 1,    /* accumulated areas of back-projected micro-occluders (overlaps count twice) */
+    SOFTSH_TECHNIQUE_BITMASK = 2, /* Bitmask Soft Shadows, Schwarz and Stamminger 2007 */
+    SOFTSH_TECHNIQUE_CONTOUR = 3  /* not supported yet */
+} softsh_technique;
+
+/* Light sample points, section 3 of the 2007 paper. */
+typedef enum softsh_pattern {
+    SOFTSH_PATTERN_DEFAULT = 0,         /* 16 x 16 jittered */
+    SOFTSH_PATTERN_8X8 = 1,
+    SOFTSH_PATTERN_16X16 = 2,
+    SOFTSH_PATTERN_16X16_JITTERED = 3,  /* 8 x 8 tiling of the 2 x 2 rotated grid */
+    SOFTSH_PATTERN_32X32 = 4
+} softsh_pattern;
+
+/* What a map texel stands for. */
+typedef enum softsh_primitive {
+    SOFTSH_PRIMITIVE_DEFAULT = 0,                /* microquad, exact */
+    SOFTSH_PRIMITIVE_MICROPATCH = 1,             /* rectangle parallel to the light, extended to its left and bottom neighbours */
+    SOFTSH_PRIMITIVE_MICROPATCH_UNEXTENDED = 2,  /* without the extension: gaps leak light */
+    SOFTSH_PRIMITIVE_MICROQUAD = 3,              /* quad of four texel centres, its true coverage */
+    SOFTSH_PRIMITIVE_MICROQUAD_RECTANGLE = 4,    /* the 2007 paper's rectangle through the edge midpoints */
+    SOFTSH_PRIMITIVE_MICRORECT = 5               /* not supported yet */
+} softsh_primitive;
+
+/* Depth of a coarse texel when a budget makes levels above the finest necessary. */
+typedef enum softsh_aggregation {
+    SOFTSH_AGGREGATION_DEFAULT = 0, /* sampled */
+    SOFTSH_AGGREGATION_NEAREST = 1, /* nearest depth of the block, as in the papers: fattens occluders */
+    SOFTSH_AGGREGATION_SAMPLED = 2  /* depth of one texel per block, always the same one: unbiased */
+} softsh_aggregation;
+
+/* How layers combine. */
+typedef enum softsh_merge {
+    SOFTSH_MERGE_UNION = 0,  /* bitmasks are OR-ed (areas are added) */
+    SOFTSH_MERGE_MAXIMUM = 1 /* the darkest single layer, as Atty et al. 2006 do for front and back faces */
+} softsh_merge;
+
+typedef struct softsh_settings {
+    uint32_t struct_size;
+    softsh_technique technique;
+    softsh_pattern pattern;
+    softsh_primitive primitive;
+    softsh_aggregation aggregation;
+    softsh_merge merge;
+    uint32_t budget;        /* at most budget x budget micro-occluders per layer and pixel; 0: unlimited; at most 4096 */
+    uint32_t min_level;     /* never evaluate below this level; 0 to 13; for comparisons */
+    uint32_t filter_passes; /* post filter of section 3.1, 0 to 16; bitmask only */
+    uint32_t no_hierarchy;  /* nonzero: neither prune kernels nor classify; for comparisons */
+} softsh_settings;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

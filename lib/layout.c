@@ -1,0 +1,68 @@
+/* Sizes and offsets inside the objects' memory. */
+#include "layout.h"
+
+#include <string.h>
+
+/* The largest minStorageBufferOffsetAlignment Vulkan allows. */
+enum { ALIGNMENT = 256 };
+
+static softshi_range append(VkDeviceSize *end, VkDeviceSize size)
+{
+    const softshi_range range = {*end, size};
+    *end = (*end + size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+    return range;
+}
+
+static uint32_t level_size(uint32_t texels, uint32_t level)
+{
+    return (uint32_t)(((uint64_t)texels + (UINT64_C(1) << level) - 1) >> level);
+}
+
+static uint32_t maximum(uint32_t a, uint32_t b)
+{
+    return a > b ? a : b;
+}
+
+static uint32_t minimum(uint32_t a, uint32_t b)
+{
+    return a < b ? a : b;
+}
+
+void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_texels, softshi_occluder_layout *out)
+{
+    memset(out, 0, sizeof *out);
+    const uint32_t side = maximum(extent.width, extent.height);
+    while (level_size(side, out->top) > 1)
+        out->top++;
+    for (uint32_t i = 1; i <= out->top; i++) {
+        out->offsets[i] = out->pyramid_texels;
+        out->pyramid_texels += level_size(extent.width, i) * level_size(extent.height, i);
+    }
+    out->join = out->top;
+    if (join_texels > 0) {
+        out->join = 0;
+        while (level_size(side, out->join) > join_texels)
+            out->join++;
+        /* Not the size at `join`: a smaller map built into the same memory may join at a finer level. */
+        out->wide_extent = (VkExtent2D){minimum(extent.width, join_texels), minimum(extent.height, join_texels)};
+        while (maximum(out->wide_extent.width, out->wide_extent.height) >> (out->wide_levels + 1))
+            out->wide_levels++;
+    }
+    VkDeviceSize end = 0;
+    out->header = append(&end, sizeof(ss_occluders) + sizeof(ss_plan));
+    out->fan_depth = append(&end, (VkDeviceSize)extent.width * extent.height * layers * sizeof(float));
+    out->pyramid = append(&end, (VkDeviceSize)maximum(out->pyramid_texels, 1) * layers * 2 * sizeof(float));
+    out->buffer_size = end;
+}
+
+void softshi_layout_view(VkExtent2D extent, bool filter, softshi_view_layout *out)
+{
+    const VkDeviceSize tiles = (VkDeviceSize)level_size(extent.width, 3) * level_size(extent.height, 3);
+    VkDeviceSize end = 0;
+    out->frame = append(&end, sizeof(ss_frame));
+    out->control = append(&end, sizeof(ss_control));
+    /* State, undecided list, and three words per penumbra tile. */
+    out->tiles = append(&end, tiles * 5 * sizeof(uint32_t));
+    out->filter = append(&end, filter ? (VkDeviceSize)extent.width * extent.height * 3 * sizeof(float) : 4);
+    out->buffer_size = end;
+}

@@ -1,0 +1,35 @@
+/* Sizes and offsets inside the objects' memory: the only place where they are computed. */
+#ifndef SOFTSHI_LAYOUT_H
+#define SOFTSHI_LAYOUT_H
+
+#include "context.h"
+#include "shared.h"
+
+typedef struct softshi_range {
+    VkDeviceSize offset, size; /* bytes */
+} softshi_range;
+
+/* One light's structures for maps of `extent`. */
+typedef struct softshi_occluder_layout {
+    softshi_range header, fan_depth, pyramid; /* in the buffer */
+    VkDeviceSize buffer_size;
+    uint32_t top;                 /* levels above level 0 */
+    uint32_t pyramid_texels;      /* per layer */
+    uint32_t offsets[SS_MAX_LEVELS];
+    uint32_t join;                /* pyramid level the wide part starts from; `top` without one */
+    uint32_t wide_levels;         /* 0 without a wide part */
+    VkExtent2D wide_extent;
+} softshi_occluder_layout;
+
+/* `join_texels`: the most texels a side of the wide part; 0: no wide part (HSM), UINT32_MAX: an MSSM. */
+void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_texels, softshi_occluder_layout *out);
+
+/* A view's scratch. */
+typedef struct softshi_view_layout {
+    softshi_range frame, control, tiles, filter;
+    VkDeviceSize buffer_size;
+} softshi_view_layout;
+
+void softshi_layout_view(VkExtent2D extent, bool filter, softshi_view_layout *out);
+
+#endif

@@ -1,0 +1,236 @@
+/* Creation and destruction of the occluders object. */
+#include "occluders.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "techniques/hierarchy.h"
+#include "validate.h"
+
+static softsh_result check_limits(const softsh_context *context, const softsh_occluders *o)
+{
+    const struct {
+        const char *what;
+        VkDeviceSize size;
+    } ranges[] = {{"fan depth", o->layout.fan_depth.size}, {"pyramid", o->layout.pyramid.size}};
+    for (size_t i = 0; i < sizeof ranges / sizeof *ranges; i++)
+        if (ranges[i].size > context->limits.maxStorageBufferRange)
+            return softshi_fail(context, SOFTSH_ERROR_LIMIT,
+                                "softsh_occluders_info: the %s of %u layers of %u x %u takes %llu MiB, the device's "
+                                "maxStorageBufferRange is %llu MiB",
+                                ranges[i].what, o->max_layers, o->max_extent.width, o->max_extent.height,
+                                (unsigned long long)(ranges[i].size >> 20),
+                                (unsigned long long)(context->limits.maxStorageBufferRange >> 20));
+    const uint32_t image_layers = o->layout.wide_levels * o->max_layers;
+    if (o->layout.wide_extent.width > context->limits.maxImageDimension2D ||
+        o->layout.wide_extent.height > context->limits.maxImageDimension2D || image_layers > context->limits.maxImageArrayLayers)
+        return softshi_fail(context, SOFTSH_ERROR_LIMIT,
+                            "softsh_occluders_info: full-resolution levels of %u x %u x %u exceed the device's image limits",
+                            o->layout.wide_extent.width, o->layout.wide_extent.height, image_layers);
+    return SOFTSH_SUCCESS;
+}
+
+static softsh_result create_resources(softsh_occluders *o)
+{
+    const softsh_context *context = o->context;
+    const VkBufferCreateInfo buffer_info = {
+        .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+        .size = o->layout.buffer_size,
+        .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
+                 VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+        .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
+    };
+    VkResult result = context->vk.CreateBuffer(context->device, &buffer_info, context->allocator, &o->block.buffer);
+    if (result != VK_SUCCESS)
+        return softshi_fail_vulkan(context, result, "vkCreateBuffer");
+    /* An HSM has no wide levels, but its passes share a descriptor set that names the image. */
+    const bool wide = o->layout.wide_levels > 0;
+    const VkImageCreateInfo image_info = {
+        .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+        .imageType = VK_IMAGE_TYPE_2D,
+        .format = VK_FORMAT_R32G32_SFLOAT,
+        .extent = {wide ? o->layout.wide_extent.width : 1, wide ? o->layout.wide_extent.height : 1, 1},
+        .mipLevels = 1,
+        .arrayLayers = wide ? o->layout.wide_levels * o->max_layers : 1,
+        .samples = VK_SAMPLE_COUNT_1_BIT,
+        .tiling = VK_IMAGE_TILING_OPTIMAL,
+        .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT,
+        .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
+        .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED,
+    };
+    VkImageFormatProperties most;
+    result = context->vk.GetPhysicalDeviceImageFormatProperties(context->physical_device, image_info.format,
+                                                                image_info.imageType, image_info.tiling, image_info.usage,
+                                                                0, &most);
+    if (result != VK_SUCCESS)
+        return softshi_fail_vulkan(context, result, "vkGetPhysicalDeviceImageFormatProperties");
+    const VkDeviceSize size = (VkDeviceSize)image_info.extent.width * image_info.extent.height * image_info.arrayLayers * 8;
+    if (size > most.maxResourceSize)
+        return softshi_fail(context, SOFTSH_ERROR_LIMIT,
+                            "softsh_occluders_info: full-resolution levels take %llu MiB, the device's images at most %llu MiB",
+                            (unsigned long long)(size >> 20), (unsigned long long)(most.maxResourceSize >> 20));
+    result = context->vk.CreateImage(context->device, &image_info, context->allocator, &o->block.image);
+    if (result != VK_SUCCESS) {
+        o->block.image = VK_NULL_HANDLE;
+        return softshi_fail_vulkan(context, result, "vkCreateImage");
+    }
+    softshi_name_object(context, VK_OBJECT_TYPE_BUFFER, (uint64_t)o->block.buffer, o->name, "occluders");
+    softshi_name_object(context, VK_OBJECT_TYPE_IMAGE, (uint64_t)o->block.image, o->name, "wide levels");
+    softshi_block_measure(context, &o->block);
+    return SOFTSH_SUCCESS;
+}
+
+static softsh_result create_sets(softsh_occluders *o, uint32_t recordings)
+{
+    const softsh_context *context = o->context;
+    o->io_set_count = recordings * o->max_layers;
+    o->io_sets = softshi_host_allocate(context->allocator, o->io_set_count * sizeof *o->io_sets);
+    if (!o->io_sets)
+        return softshi_fail(context, SOFTSH_ERROR_OUT_OF_HOST_MEMORY, "no host memory for %u descriptor sets", o->io_set_count);
+    const uint32_t n = o->io_set_count;
+    const VkDescriptorPoolSize sizes[] = {
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 3 + 4 * n},
+        {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1 + 2 * n},
+        {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 1 + n},
+    };
+    const VkDescriptorPoolCreateInfo pool_info = {
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+        .maxSets = 1 + n,
+        .poolSizeCount = 3,
+        .pPoolSizes = sizes,
+    };
+    VkResult result = context->vk.CreateDescriptorPool(context->device, &pool_info, context->allocator, &o->pool);
+    if (result != VK_SUCCESS)
+        return softshi_fail_vulkan(context, result, "vkCreateDescriptorPool");
+    VkDescriptorSetAllocateInfo set_info = {
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+        .descriptorPool = o->pool,
+        .descriptorSetCount = 1,
+        .pSetLayouts = &context->set_layouts[SS_SET_OCCLUDERS],
+    };
+    result = context->vk.AllocateDescriptorSets(context->device, &set_info, &o->set);
+    set_info.pSetLayouts = &context->set_layouts[SS_SET_IO];
+    for (uint32_t i = 0; i < n && result == VK_SUCCESS; i++)
+        result = context->vk.AllocateDescriptorSets(context->device, &set_info, &o->io_sets[i]);
+    return result == VK_SUCCESS ? SOFTSH_SUCCESS : softshi_fail_vulkan(context, result, "vkAllocateDescriptorSets");
+}
+
+/* Once the memory is there: the image's view and the descriptors that never change. */
+static softsh_result finish(softsh_occluders *o)
+{
+    const softsh_context *context = o->context;
+    const VkImageViewCreateInfo view_info = {
+        .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+        .image = o->block.image,
+        .viewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY,
+        .format = VK_FORMAT_R32G32_SFLOAT,
+        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, VK_REMAINING_ARRAY_LAYERS},
+    };
+    const VkResult result = context->vk.CreateImageView(context->device, &view_info, context->allocator, &o->wide_view);
+    if (result != VK_SUCCESS) {
+        o->wide_view = VK_NULL_HANDLE;
+        return softshi_fail_vulkan(context, result, "vkCreateImageView");
+    }
+    const softshi_range ranges[] = {o->layout.header, o->layout.fan_depth, o->layout.pyramid};
+    VkDescriptorBufferInfo buffers[3];
+    VkWriteDescriptorSet writes[SS_OCCLUDER_BINDINGS];
+    for (uint32_t i = 0; i < 3; i++) {
+        buffers[i] = (VkDescriptorBufferInfo){o->block.buffer, ranges[i].offset, ranges[i].size};
+        writes[i] = (VkWriteDescriptorSet){
+            .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+            .dstSet = o->set,
+            .dstBinding = i, /* SS_BIND_OCCLUDERS, _FAN_DEPTH, _PYRAMID */
+            .descriptorCount = 1,
+            .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+            .pBufferInfo = &buffers[i],
+        };
+    }
+    const VkDescriptorImageInfo image = {VK_NULL_HANDLE, o->wide_view, VK_IMAGE_LAYOUT_GENERAL};
+    for (uint32_t i = 0; i < 2; i++)
+        writes[3 + i] = (VkWriteDescriptorSet){
+            .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+            .dstSet = o->set,
+            .dstBinding = i == 0 ? SS_BIND_WIDE : SS_BIND_WIDE_OUT,
+            .descriptorCount = 1,
+            .descriptorType = i == 0 ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
+            .pImageInfo = &image,
+        };
+    context->vk.UpdateDescriptorSets(context->device, SS_OCCLUDER_BINDINGS, writes, 0, NULL);
+    return SOFTSH_SUCCESS;
+}
+
+softsh_result softsh_occluders_create(softsh_context *context, const softsh_occluders_info *info, softsh_occluders **out)
+{
+    if (out)
+        *out = NULL;
+    if (!context)
+        return SOFTSH_ERROR_INVALID_ARGUMENT;
+    softsh_result result = softshi_check_occluders_info(context, info, out);
+    if (result != SOFTSH_SUCCESS)
+        return result;
+    softsh_occluders *o = softshi_host_allocate(context->allocator, sizeof *o);
+    if (!o)
+        return softshi_fail(context, SOFTSH_ERROR_OUT_OF_HOST_MEMORY, "no host memory for the occluders");
+    memset(o, 0, sizeof *o);
+    o->context = context;
+    snprintf(o->name, sizeof o->name, "%s", info->name ? info->name : "softshadow");
+    o->max_extent = info->max_extent;
+    o->max_layers = info->max_layers ? info->max_layers : 1;
+    o->join_texels = info->ysm_join ? info->ysm_join : 256;
+    if (info->accel == SOFTSH_ACCEL_HSM)
+        o->join_texels = 0;
+    else if (info->accel == SOFTSH_ACCEL_MSSM)
+        o->join_texels = UINT32_MAX;
+    softshi_layout_occluders(o->max_extent, o->max_layers, o->join_texels, &o->layout);
+    result = check_limits(context, o);
+    if (result == SOFTSH_SUCCESS)
+        result = create_resources(o);
+    if (result == SOFTSH_SUCCESS)
+        result = create_sets(o, info->max_recordings ? info->max_recordings : 4);
+    if (result == SOFTSH_SUCCESS)
+        result = softshi_hierarchy_create(o);
+    if (result == SOFTSH_SUCCESS && info->memory_mode == SOFTSH_MEMORY_LIBRARY) {
+        result = softshi_block_allocate(context, &o->block);
+        if (result == SOFTSH_SUCCESS)
+            result = finish(o);
+    }
+    if (result != SOFTSH_SUCCESS) {
+        softsh_occluders_destroy(o);
+        return result;
+    }
+    *out = o;
+    return SOFTSH_SUCCESS;
+}
+
+void softsh_occluders_destroy(softsh_occluders *o)
+{
+    if (!o)
+        return;
+    const softsh_context *context = o->context;
+    softshi_hierarchy_destroy(o);
+    if (o->pool)
+        context->vk.DestroyDescriptorPool(context->device, o->pool, context->allocator);
+    if (o->wide_view)
+        context->vk.DestroyImageView(context->device, o->wide_view, context->allocator);
+    softshi_block_destroy(context, &o->block);
+    if (o->io_sets)
+        softshi_host_free(context->allocator, o->io_sets);
+    softshi_host_free(context->allocator, o);
+}
+
+softsh_result softsh_occluders_memory_requirements(const softsh_occluders *o, VkMemoryRequirements *out)
+{
+    if (!o || !out)
+        return SOFTSH_ERROR_INVALID_ARGUMENT;
+    *out = o->block.requirements;
+    return SOFTSH_SUCCESS;
+}
+
+softsh_result softsh_occluders_bind_memory(softsh_occluders *o, VkDeviceMemory memory, VkDeviceSize offset, VkDeviceSize size)
+{
+    if (!o)
+        return SOFTSH_ERROR_INVALID_ARGUMENT;
+    const softsh_result result =
+        softshi_block_bind(o->context, &o->block, memory, offset, size, "softsh_occluders_bind_memory");
+    return result == SOFTSH_SUCCESS ? finish(o) : result;
+}

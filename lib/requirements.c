@@ -1,0 +1,67 @@
+/* Version, result names, and what a device must offer. */
+#include <softshadow/softshadow.h>
+
+#include <string.h>
+
+uint32_t softsh_version(void)
+{
+    return SOFTSH_VERSION;
+}
+
+const char *softsh_result_string(softsh_result result)
+{
+    switch (result) {
+    case SOFTSH_SUCCESS:
+        return "SOFTSH_SUCCESS";
+    case SOFTSH_ERROR_INVALID_ARGUMENT:
+        return "SOFTSH_ERROR_INVALID_ARGUMENT";
+    case SOFTSH_ERROR_UNSUPPORTED:
+        return "SOFTSH_ERROR_UNSUPPORTED";
+    case SOFTSH_ERROR_LIMIT:
+        return "SOFTSH_ERROR_LIMIT";
+    case SOFTSH_ERROR_OUT_OF_HOST_MEMORY:
+        return "SOFTSH_ERROR_OUT_OF_HOST_MEMORY";
+    case SOFTSH_ERROR_OUT_OF_DEVICE_MEMORY:
+        return "SOFTSH_ERROR_OUT_OF_DEVICE_MEMORY";
+    case SOFTSH_ERROR_STATE:
+        return "SOFTSH_ERROR_STATE";
+    case SOFTSH_ERROR_VULKAN:
+        return "SOFTSH_ERROR_VULKAN";
+    }
+    return "unknown softsh_result";
+}
+
+softsh_result softsh_get_requirements(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
+                                      VkPhysicalDevice physical_device, softsh_requirements *out)
+{
+    static const char *const useful_extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
+    if (!out || out->struct_size != sizeof *out || !get_instance_proc_addr)
+        return SOFTSH_ERROR_INVALID_ARGUMENT;
+    memset(out, 0, sizeof *out);
+    out->struct_size = sizeof *out;
+    out->api_version = VK_API_VERSION_1_1;
+    /* One shader writes every output format. */
+    out->features.shaderStorageImageWriteWithoutFormat = VK_TRUE;
+    out->useful_extensions = useful_extensions;
+    out->useful_extension_count = 1;
+    if (!instance || !physical_device)
+        return SOFTSH_SUCCESS;
+    const PFN_vkGetPhysicalDeviceProperties get_properties =
+        (PFN_vkGetPhysicalDeviceProperties)get_instance_proc_addr(instance, "vkGetPhysicalDeviceProperties");
+    const PFN_vkGetPhysicalDeviceFeatures get_features =
+        (PFN_vkGetPhysicalDeviceFeatures)get_instance_proc_addr(instance, "vkGetPhysicalDeviceFeatures");
+    const PFN_vkGetPhysicalDeviceFormatProperties get_format =
+        (PFN_vkGetPhysicalDeviceFormatProperties)get_instance_proc_addr(instance, "vkGetPhysicalDeviceFormatProperties");
+    if (!get_properties || !get_features || !get_format)
+        return SOFTSH_ERROR_INVALID_ARGUMENT;
+    VkPhysicalDeviceProperties properties;
+    VkPhysicalDeviceFeatures features;
+    VkFormatProperties wide;
+    get_properties(physical_device, &properties);
+    get_features(physical_device, &features);
+    get_format(physical_device, VK_FORMAT_R32G32_SFLOAT, &wide);
+    const VkFormatFeatureFlags needed = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
+    out->supported = properties.apiVersion >= VK_API_VERSION_1_1 && features.shaderStorageImageWriteWithoutFormat &&
+                     (wide.optimalTilingFeatures & needed) == needed;
+    return SOFTSH_SUCCESS;
+}

@@ -1,0 +1,21 @@
+/* Bitmask Soft Shadows (Schwarz and Stamminger 2007) and area accumulation (Guennebaud et al. 2006): one evaluation pass over
+ * the penumbra tiles; pattern, primitive and budget are specialization constants and parameters of its shader. */
+#include "techniques.h"
+
+softsh_result softshi_bitmask_create(softsh_view *view, int wide, const softshi_specialization *constants)
+{
+    return softshi_pipeline_create(view->context, SOFTSHI_SHADER_BITMASK_EVALUATE, constants, &view->pipelines.evaluate[wide]);
+}
+
+void softshi_bitmask_record(const softshi_visibility *visibility)
+{
+    const softsh_view *view = visibility->view;
+    const softshi_pass evaluate = {
+        .pipeline = &view->pipelines.evaluate[visibility->occluders->wide],
+        .reads = SOFTSHI_HIERARCHY | SOFTSHI_FRAME | SOFTSHI_TILES,
+        .writes = SOFTSHI_CONTROL | SOFTSHI_FILTER | SOFTSHI_VISIBILITY,
+        .indirect = view->block.buffer,
+        .indirect_offset = view->layout.control.offset + offsetof(ss_control, evaluate_args),
+    };
+    softshi_record_pass(visibility->recorder, &evaluate);
+}

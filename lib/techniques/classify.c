@@ -1,0 +1,34 @@
+/* Lit, umbra or penumbra: first whole tiles, then the pixels of the tiles that are undecided (search area refinement of
+ * Schwarz and Stamminger 2007, section 5; tiles and compaction are ours). Each stage dispatches the next. */
+#include "techniques.h"
+
+softsh_result softshi_classify_create(softsh_view *view, int wide, const softshi_specialization *constants)
+{
+    const softsh_result result = softshi_pipeline_create(view->context, SOFTSHI_SHADER_CLASSIFY_TILES, constants,
+                                                         &view->pipelines.classify_tiles[wide]);
+    if (result != SOFTSH_SUCCESS)
+        return result;
+    return softshi_pipeline_create(view->context, SOFTSHI_SHADER_CLASSIFY_PIXELS, constants,
+                                   &view->pipelines.classify_pixels[wide]);
+}
+
+void softshi_classify_record(const softshi_visibility *visibility)
+{
+    const softsh_view *view = visibility->view;
+    const int wide = visibility->occluders->wide;
+    const softshi_pass tiles = {
+        .pipeline = &view->pipelines.classify_tiles[wide],
+        .reads = SOFTSHI_HIERARCHY | SOFTSHI_FRAME,
+        .writes = SOFTSHI_CONTROL | SOFTSHI_TILES | SOFTSHI_VISIBILITY,
+        .groups = {(visibility->frame.tiles.x + 7) / 8, (visibility->frame.tiles.y + 7) / 8, 1},
+    };
+    softshi_record_pass(visibility->recorder, &tiles);
+    const softshi_pass pixels = {
+        .pipeline = &view->pipelines.classify_pixels[wide],
+        .reads = SOFTSHI_HIERARCHY | SOFTSHI_FRAME,
+        .writes = SOFTSHI_CONTROL | SOFTSHI_TILES | SOFTSHI_FILTER | SOFTSHI_VISIBILITY,
+        .indirect = view->block.buffer,
+        .indirect_offset = view->layout.control.offset + offsetof(ss_control, pixels_args),
+    };
+    softshi_record_pass(visibility->recorder, &pixels);
+}

@@ -1,0 +1,98 @@
+/* Acceleration structures over a map: the min/max pyramid (HSM, Guennebaud et al. 2006), the multi-scale shadow map (MSSM,
+ * Schwarz and Stamminger 2007, section 5) and their hybrid (YSM, Schwarz and Stamminger 2008, section 6).
+ *
+ * The three are one structure here: a full pyramid, and an MSSM over one of its levels (level 0: an MSSM, none: an HSM).
+ * Departures: level 0 holds one value per texel instead of a pair; an MSSM has a pyramid beside it, a twelfth more memory at
+ * ten levels, which gives the light's largest kernel, so that levels no kernel asks for are not built. */
+#include "hierarchy.h"
+
+enum { GROUP_X = 32, GROUP_Y = 4 };
+
+softsh_result softshi_hierarchy_create(softsh_occluders *o)
+{
+    softshi_specialization constants = {{0}};
+    softshi_hierarchy_pipelines *p = &o->pipelines;
+    const struct {
+        softshi_shader shader;
+        uint32_t from_fan_depth;
+        softshi_pipeline *pipeline;
+    } list[] = {
+        {SOFTSHI_SHADER_HIERARCHY_CONVERT, 0, &p->convert}, {SOFTSHI_SHADER_HIERARCHY_REDUCE, 1, &p->reduce_first},
+        {SOFTSHI_SHADER_HIERARCHY_REDUCE, 0, &p->reduce},   {SOFTSHI_SHADER_HIERARCHY_PLAN, 0, &p->plan},
+        {SOFTSHI_SHADER_HIERARCHY_WIDEN, 0, &p->widen},
+    };
+    for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
+        constants.values[SS_SPEC_COUNT] = list[i].from_fan_depth;
+        const softsh_result result = softshi_pipeline_create(o->context, list[i].shader, &constants, list[i].pipeline);
+        if (result != SOFTSH_SUCCESS)
+            return result;
+    }
+    return SOFTSH_SUCCESS;
+}
+
+void softshi_hierarchy_destroy(softsh_occluders *o)
+{
+    softshi_hierarchy_pipelines *p = &o->pipelines;
+    softshi_pipeline *const all[] = {&p->convert, &p->reduce_first, &p->reduce, &p->plan, &p->widen};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        softshi_pipeline_destroy(o->context, all[i]);
+}
+
+static softshi_pass cover(const softshi_pipeline *pipeline, uint32_t width, uint32_t height)
+{
+    return (softshi_pass){.pipeline = pipeline,
+                          .groups = {(width + GROUP_X - 1) / GROUP_X, (height + GROUP_Y - 1) / GROUP_Y, 1}};
+}
+
+void softshi_hierarchy_record_convert(softshi_recorder *recorder, const softsh_occluders *o, VkExtent2D extent,
+                                      const ss_convert_push *push)
+{
+    softshi_pass pass = cover(&o->pipelines.convert, extent.width, extent.height);
+    pass.reads = SOFTSHI_HEADER;
+    /* Layers write different parts and need no order between them. */
+    pass.writes = push->layer == 0 ? SOFTSHI_FAN_DEPTH : 0;
+    pass.push = push;
+    pass.push_size = sizeof *push;
+    softshi_record_pass(recorder, &pass);
+}
+
+void softshi_hierarchy_record_levels(softshi_recorder *recorder, const softsh_occluders *o, VkExtent2D extent,
+                                     const softshi_occluder_layout *layout, uint32_t layers)
+{
+    for (uint32_t level = 1; level <= layout->top; level++) {
+        for (uint32_t layer = 0; layer < layers; layer++) {
+            const ss_level_push push = {.level = level, .layer = layer};
+            softshi_pass pass = cover(level == 1 ? &o->pipelines.reduce_first : &o->pipelines.reduce,
+                                      (uint32_t)(((uint64_t)extent.width + (1u << level) - 1) >> level),
+                                      (uint32_t)(((uint64_t)extent.height + (1u << level) - 1) >> level));
+            pass.reads = SOFTSHI_HEADER | SOFTSHI_FAN_DEPTH;
+            pass.writes = layer == 0 ? SOFTSHI_PYRAMID : 0;
+            pass.push = &push;
+            pass.push_size = sizeof push;
+            softshi_record_pass(recorder, &pass);
+        }
+    }
+    const softshi_pass plan = {
+        .pipeline = &o->pipelines.plan,
+        .reads = SOFTSHI_HEADER | SOFTSHI_FAN_DEPTH | SOFTSHI_PYRAMID,
+        .writes = SOFTSHI_PLAN,
+        .groups = {1, 1, 1},
+    };
+    softshi_record_pass(recorder, &plan);
+    for (uint32_t level = 1; level <= layout->wide_levels; level++) {
+        for (uint32_t layer = 0; layer < layers; layer++) {
+            const ss_level_push push = {.level = level, .layer = layer};
+            const softshi_pass pass = {
+                .pipeline = &o->pipelines.widen,
+                .reads = SOFTSHI_HEADER | SOFTSHI_PLAN | SOFTSHI_FAN_DEPTH | SOFTSHI_PYRAMID,
+                .writes = layer == 0 ? SOFTSHI_WIDE : 0,
+                .push = &push,
+                .push_size = sizeof push,
+                .indirect = o->block.buffer,
+                .indirect_offset = o->layout.header.offset + sizeof(ss_occluders) + offsetof(ss_plan, args) +
+                                   (level - 1) * sizeof(ss_uvec4),
+            };
+            softshi_record_pass(recorder, &pass);
+        }
+    }
+}

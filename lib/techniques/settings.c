@@ -1,0 +1,50 @@
+/* From the public settings to specialization constants; what `auto` means. */
+#include "settings.h"
+
+softsh_settings softshi_settings_resolve(const softsh_settings *settings)
+{
+    softsh_settings s = {.struct_size = sizeof s};
+    if (settings)
+        s = *settings;
+    if (s.technique == SOFTSH_TECHNIQUE_AUTO)
+        s = (softsh_settings){.struct_size = sizeof s, .technique = SOFTSH_TECHNIQUE_BITMASK, .budget = 32};
+    if (s.pattern == SOFTSH_PATTERN_DEFAULT)
+        s.pattern = SOFTSH_PATTERN_16X16_JITTERED;
+    if (s.primitive == SOFTSH_PRIMITIVE_DEFAULT)
+        s.primitive = SOFTSH_PRIMITIVE_MICROQUAD;
+    if (s.aggregation == SOFTSH_AGGREGATION_DEFAULT)
+        s.aggregation = SOFTSH_AGGREGATION_SAMPLED;
+    if (s.technique == SOFTSH_TECHNIQUE_AREA)
+        s.filter_passes = 0;
+    return s;
+}
+
+softshi_specialization softshi_settings_specialize(const softsh_settings *s, bool normals, bool stats)
+{
+    static const uint32_t sides[] = {[SOFTSH_PATTERN_8X8] = 8,
+                                     [SOFTSH_PATTERN_16X16] = 16,
+                                     [SOFTSH_PATTERN_16X16_JITTERED] = 16,
+                                     [SOFTSH_PATTERN_32X32] = 32};
+    static const uint32_t primitives[] = {[SOFTSH_PRIMITIVE_MICROPATCH] = SS_PRIMITIVE_PATCH_EXTENDED,
+                                          [SOFTSH_PRIMITIVE_MICROPATCH_UNEXTENDED] = SS_PRIMITIVE_PATCH,
+                                          [SOFTSH_PRIMITIVE_MICROQUAD] = SS_PRIMITIVE_QUAD,
+                                          [SOFTSH_PRIMITIVE_MICROQUAD_RECTANGLE] = SS_PRIMITIVE_QUAD_RECTANGLE};
+    const bool area = s->technique == SOFTSH_TECHNIQUE_AREA;
+    softshi_specialization c = {{0}};
+    c.values[SS_SPEC_PATTERN_SIDE] = area ? 0 : sides[s->pattern];
+    c.values[SS_SPEC_JITTERED] = !area && s->pattern == SOFTSH_PATTERN_16X16_JITTERED;
+    c.values[SS_SPEC_PRIMITIVE] = primitives[s->primitive];
+    c.values[SS_SPEC_SAMPLED] = s->aggregation == SOFTSH_AGGREGATION_SAMPLED;
+    c.values[SS_SPEC_MERGE_MAXIMUM] = s->merge == SOFTSH_MERGE_MAXIMUM;
+    c.values[SS_SPEC_AREA] = area || s->filter_passes > 0;
+    c.values[SS_SPEC_HIERARCHY] = !s->no_hierarchy;
+    c.values[SS_SPEC_STATS] = stats;
+    c.values[SS_SPEC_FILTER] = s->filter_passes > 0;
+    c.values[SS_SPEC_NORMALS] = normals;
+    return c;
+}
+
+bool softshi_settings_need_alignment(const softsh_settings *s)
+{
+    return s->primitive == SOFTSH_PRIMITIVE_MICROPATCH || s->primitive == SOFTSH_PRIMITIVE_MICROPATCH_UNEXTENDED;
+}

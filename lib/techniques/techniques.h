@@ -1,0 +1,22 @@
+/* The stages of a visibility call, one file each. `create` makes a stage's pipelines for a view, `record` its passes. */
+#ifndef SOFTSHI_TECHNIQUES_H
+#define SOFTSHI_TECHNIQUES_H
+
+#include "view.h"
+
+softsh_result softshi_classify_create(softsh_view *view, int wide, const softshi_specialization *constants);
+void softshi_classify_record(const softshi_visibility *visibility);
+
+softsh_result softshi_bitmask_create(softsh_view *view, int wide, const softshi_specialization *constants);
+void softshi_bitmask_record(const softshi_visibility *visibility);
+
+softsh_result softshi_post_filter_create(softsh_view *view, const softshi_specialization *constants);
+void softshi_post_filter_record(const softshi_visibility *visibility);
+
+softsh_result softshi_hard_create(softsh_view *view, const softshi_specialization *constants);
+void softshi_hard_record(const softshi_visibility *visibility);
+
+/* What every pass that queries the hierarchy reads. */
+enum { SOFTSHI_HIERARCHY = SOFTSHI_HEADER | SOFTSHI_PLAN | SOFTSHI_FAN_DEPTH | SOFTSHI_PYRAMID | SOFTSHI_WIDE };
+
+#endif

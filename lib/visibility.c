@@ -1,0 +1,149 @@
+/* softsh_cmd_compute_visibility: checks, the frame's parameters, and the stages in order. */
+#include <math.h>
+#include <string.h>
+
+#include "techniques/settings.h"
+#include "techniques/techniques.h"
+#include "validate.h"
+
+static softsh_result check(const softsh_view *v, const softsh_visibility_info *info, VkRect2D *area)
+{
+    const softsh_context *context = v->context;
+    if (!info)
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_visibility_info is NULL");
+    if (info->struct_size != sizeof *info)
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_visibility_info::struct_size is %u, expected %u",
+                            info->struct_size, (unsigned)sizeof *info);
+    if (!v->block.bound)
+        return softshi_fail(context, SOFTSH_ERROR_STATE, "softsh_cmd_compute_visibility: no memory is bound to the view");
+    if (!info->occluders)
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_visibility_info::occluders is NULL");
+    if (info->occluders->context != context)
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_visibility_info::occluders belongs to another context");
+    if (!info->occluders->built)
+        return softshi_fail(context, SOFTSH_ERROR_STATE, "softsh_visibility_info::occluders was never built");
+    if (!info->cameras || info->camera_count == 0)
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_visibility_info has no camera, expected 1");
+    if (info->camera_count > 1)
+        return softshi_fail(context, SOFTSH_ERROR_UNSUPPORTED,
+                            "softsh_visibility_info::camera_count is %u, more than 1 is not supported yet", info->camera_count);
+    softsh_result result = softshi_check_camera(context, info->cameras, v->normals);
+    if (result != SOFTSH_SUCCESS)
+        return result;
+    *area = info->render_area;
+    result = softshi_check_rect(context, "softsh_visibility_info::render_area", v->max_extent, area);
+    if (result != SOFTSH_SUCCESS)
+        return result;
+    if (!info->visibility)
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_visibility_info::visibility is VK_NULL_HANDLE");
+    if (info->override_bias && !(info->bias >= 0.0 && info->bias < 1e30))
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT,
+                            "softsh_visibility_info::bias is %g, expected a finite number of world units, at least 0", info->bias);
+    if (info->stats_buffer && !v->stats)
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT,
+                            "softsh_visibility_info::stats_buffer is set, but the view was created without stats");
+    if (info->stats_offset % 4 != 0)
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT,
+                            "softsh_visibility_info::stats_offset is %llu, expected a multiple of 4",
+                            (unsigned long long)info->stats_offset);
+    if (softshi_settings_need_alignment(&v->settings) && !info->occluders->light.point &&
+        !info->occluders->light.axis_aligned)
+        return softshi_fail(context, SOFTSH_ERROR_UNSUPPORTED,
+                            "softsh_light: its axes are turned against the map's, which micropatches cannot do; use microquads");
+    return softshi_check_timestamps(context, info->timestamps);
+}
+
+static void fill_frame(const softsh_view *v, const softsh_visibility_info *info, VkRect2D area, ss_frame *frame)
+{
+    frame->camera.y = 2.0f / (float)area.extent.width;
+    frame->camera.z = 2.0f / (float)area.extent.height;
+    frame->bias.x = (float)info->bias;
+    frame->area = (ss_ivec4){area.offset.x, area.offset.y, (int32_t)area.extent.width, (int32_t)area.extent.height};
+    frame->tiles.x = (area.extent.width + SS_TILE - 1) / SS_TILE;
+    frame->tiles.y = (area.extent.height + SS_TILE - 1) / SS_TILE;
+    frame->tiles.z = frame->tiles.x * frame->tiles.y;
+    frame->tiles.w = info->override_bias ? SS_FLAG_OVERRIDE_BIAS : 0u;
+    frame->quality.x = v->settings.budget;
+    frame->quality.y = v->settings.min_level;
+    frame->quality.z = area.extent.width * area.extent.height;
+}
+
+static void write_descriptors(const softsh_view *v, VkDescriptorSet set, const softsh_visibility_info *info)
+{
+    const softsh_camera *camera = info->cameras;
+    const VkDescriptorImageInfo images[] = {
+        [SS_BIND_DEPTH] = {VK_NULL_HANDLE, camera->depth, camera->depth_layout},
+        /* Passes without normals do not read theirs, but the binding is in the shader. */
+        [SS_BIND_NORMALS] = {VK_NULL_HANDLE, v->normals ? camera->normals : camera->depth,
+                             v->normals ? camera->normals_layout : camera->depth_layout},
+        [SS_BIND_VISIBILITY] = {VK_NULL_HANDLE, info->visibility, VK_IMAGE_LAYOUT_GENERAL},
+    };
+    const softshi_range ranges[] = {v->layout.frame, v->layout.control, v->layout.tiles, v->layout.filter};
+    VkDescriptorBufferInfo buffers[4];
+    VkWriteDescriptorSet writes[SS_IO_BINDINGS];
+    for (uint32_t i = 0; i < SS_IO_BINDINGS; i++) {
+        writes[i] = (VkWriteDescriptorSet){
+            .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, .dstSet = set, .dstBinding = i, .descriptorCount = 1};
+        if (i <= SS_BIND_VISIBILITY) {
+            writes[i].descriptorType =
+                i == SS_BIND_VISIBILITY ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE : VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+            writes[i].pImageInfo = &images[i];
+        } else {
+            const softshi_range *range = &ranges[i - SS_BIND_FRAME];
+            buffers[i - SS_BIND_FRAME] = (VkDescriptorBufferInfo){v->block.buffer, range->offset, range->size};
+            writes[i].descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+            writes[i].pBufferInfo = &buffers[i - SS_BIND_FRAME];
+        }
+    }
+    v->context->vk.UpdateDescriptorSets(v->context->device, SS_IO_BINDINGS, writes, 0, NULL);
+}
+
+static void record_stats(softshi_recorder *recorder, const softsh_view *v, const softsh_visibility_info *info)
+{
+    const softsh_occluders *o = info->occluders;
+    softshi_record_copy(recorder, SOFTSHI_CONTROL, v->block.buffer, v->layout.control.offset + offsetof(ss_control, stats),
+                        info->stats_buffer, info->stats_offset, offsetof(softsh_stats, wide_levels_built));
+    softshi_record_copy(recorder, SOFTSHI_PLAN, o->block.buffer,
+                        o->layout.header.offset + sizeof(ss_occluders) + offsetof(ss_plan, built), info->stats_buffer,
+                        info->stats_offset + offsetof(softsh_stats, wide_levels_built), 2 * sizeof(uint32_t));
+}
+
+softsh_result softsh_cmd_compute_visibility(VkCommandBuffer cmd, softsh_view *v, const softsh_visibility_info *info)
+{
+    if (!v)
+        return SOFTSH_ERROR_INVALID_ARGUMENT;
+    if (!cmd)
+        return softshi_fail(v->context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_cmd_compute_visibility: cmd is VK_NULL_HANDLE");
+    VkRect2D area;
+    softsh_result result = check(v, info, &area);
+    if (result != SOFTSH_SUCCESS)
+        return result;
+    softshi_visibility visibility = {.view = v, .occluders = info->occluders};
+    result = softshi_camera_space_create(v->context, info->cameras, &info->occluders->map, &visibility.frame);
+    if (result != SOFTSH_SUCCESS)
+        return result;
+    fill_frame(v, info, area, &visibility.frame);
+
+    const ss_control cleared = {.pixels_args = {0, 1, 1, 0}, .evaluate_args = {0, 1, 1, 0}};
+    softshi_recorder recorder;
+    visibility.recorder = &recorder;
+    softshi_record_begin(&recorder, v->context, cmd, info->timestamps, v->name);
+    recorder.sets[SS_SET_OCCLUDERS] = info->occluders->set;
+    recorder.sets[SS_SET_IO] = v->io_sets[v->next_io_set];
+    v->next_io_set = (v->next_io_set + 1) % v->io_set_count;
+    write_descriptors(v, recorder.sets[SS_SET_IO], info);
+    softshi_record_update(&recorder, SOFTSHI_FRAME, v->block.buffer, v->layout.frame.offset, &visibility.frame,
+                          sizeof visibility.frame);
+    softshi_record_update(&recorder, SOFTSHI_CONTROL, v->block.buffer, v->layout.control.offset, &cleared, sizeof cleared);
+    if (info->occluders->light.point) {
+        softshi_hard_record(&visibility);
+    } else {
+        softshi_classify_record(&visibility);
+        softshi_bitmask_record(&visibility);
+        softshi_post_filter_record(&visibility);
+    }
+    if (info->stats_buffer)
+        record_stats(&recorder, v, info);
+    softshi_record_end(&recorder);
+    return SOFTSH_SUCCESS;
+}

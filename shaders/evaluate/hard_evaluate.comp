@@ -1,0 +1,37 @@
+#version 460
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_GOOGLE_include_directive : require
+// A light without extent: one texel per layer, compared with the receiver's plane at the texel's centre.
+#include "ss_types.h"
+#include "ss_specialization.glsl"
+#include "ss_occluder_bindings.glsl"
+#include "ss_io_bindings.glsl"
+#include "ss_receiver.glsl"
+#include "ss_range.glsl"
+
+layout(local_size_x = SS_TILE, local_size_y = SS_TILE) in;
+
+void main()
+{
+    const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, frame.area.zw)))
+        return;
+    const ss_receiver r = ss_load_receiver(pixel);
+    bool dark = r.valid && r.away;
+    const ivec2 texel = ivec2(clamp(floor(r.uv), vec2(0.0), vec2(occ.size.xy) - 1.0));
+    const vec2 to_centre = vec2(texel) + 0.5 - r.uv;
+    float g = r.g + dot(r.gradient, to_centre) + r.eta + 0.5 * (abs(r.gradient.x) + abs(r.gradient.y));
+    if ((frame.tiles.w & SS_FLAG_OVERRIDE_BIAS) != 0u) {
+        const float b = frame.bias.x;
+        g = (occ.size.w & SS_FLAG_ORTHOGRAPHIC) != 0u ? r.g + b : (b * r.g < 1.0 ? r.g / (1.0 - b * r.g) : 3e38);
+    }
+    for (uint layer = 0u; layer < occ.size.z; layer++) {
+        const float occluder = ss_load_fan_depth(layer, texel);
+        dark = dark || (r.valid && occluder > g && occ.light.w - occ.light.z * occluder > 0.0);
+    }
+    ss_write_visibility(pixel, dark ? 0.0 : 1.0);
+    if (SS_STATS) {
+        ss_count(SS_STAT_PIXELS, 1u);
+        ss_count(dark ? SS_STAT_UMBRA : SS_STAT_LIT, 1u);
+    }
+}

@@ -1,0 +1,49 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// How many wide levels the largest possible kernel can ask for, given the light and the map's actual depth range. The rest
+// are dispatched with zero groups; a query above what was built falls back on the pyramid's root.
+#include "ss_types.h"
+
+layout(local_size_x = 1) in;
+
+layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_OCCLUDERS, std430) buffer ss_occluders_buffer
+{
+    ss_occluders occ;
+    ss_plan plan;
+};
+layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_FAN_DEPTH, std430) readonly buffer ss_fan_depth_buffer
+{
+    float fan_depth[];
+};
+layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_PYRAMID, std430) readonly buffer ss_pyramid_buffer
+{
+    vec2 pyramid[];
+};
+
+void main()
+{
+    float nearest = occ.depths.w, farthest = occ.depths.w;
+    for (uint layer = 0u; layer < occ.size.z; layer++) {
+        const uint top = occ.levels.x;
+        const vec2 range = top == 0u ? vec2(fan_depth[layer * occ.strides.x])
+                                     : pyramid[layer * occ.strides.y + occ.offsets[top >> 2][top & 3u]];
+        nearest = max(nearest, range.y);
+        farthest = min(farthest, range.x);
+    }
+    if (occ.light.z > 0.0)
+        nearest = min(nearest, occ.light.w / occ.light.z);
+    // Receivers farther than the far plane have larger kernels; they take the root instead.
+    const float k = (nearest - farthest) / (occ.light.w - occ.light.z * nearest);
+    const vec2 corner = max(abs(occ.light.xy), abs(occ.light.xy - occ.light.z * vec2(occ.size.xy)));
+    const vec2 side = (2.0 * vec2(abs(occ.a.x) + abs(occ.a.y), abs(occ.a.z) + abs(occ.a.w)) + corner) * k;
+    const float map_side = float(max(occ.size.x, occ.size.y));
+    float texels = max(side.x, side.y) + 4.0;
+    if (!(texels <= map_side))
+        texels = map_side;
+    const uint cells = (uint(ceil(texels)) >> occ.levels.y) + 2u;
+    const uint wanted = min(uint(findMSB(cells)), occ.levels.z);
+    const uvec2 size = (occ.size.xy + (1u << occ.levels.y) - 1u) >> occ.levels.y;
+    for (uint i = 0u; i < SS_MAX_LEVELS; i++)
+        plan.args[i] = i < wanted ? uvec4((size + uvec2(31u, 3u)) / uvec2(32u, 4u), 1u, 0u) : uvec4(0u, 1u, 1u, 0u);
+    plan.built = uvec4(wanted, occ.levels.z - wanted, 0u, 0u);
+}

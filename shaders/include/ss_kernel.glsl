@@ -1,0 +1,136 @@
+// The kernel of a receiver and the map samples it asks for: docs/numerics.md, sections 2 and 5.
+// Needs the frame and occluder bindings.
+#ifndef SS_KERNEL_GLSL
+#define SS_KERNEL_GLSL
+
+const bool SS_IS_PATCH = SS_PRIMITIVE == SS_PRIMITIVE_PATCH || SS_PRIMITIVE == SS_PRIMITIVE_PATCH_EXTENDED;
+
+// Occluders at or beyond the light do not count: the fan depth of the light's plane bounds them.
+float ss_clip_to_light(float g)
+{
+    return occ.light.z > 0.0 ? min(g, occ.light.w / occ.light.z) : g;
+}
+
+// Bounding box (x0, y0, x1, y1), in texels, of the light seen from receivers in uv_lo..uv_hi no farther than g, for
+// occluders up to g_hi; den is the least epsilon - delta g of these receivers.
+vec4 ss_kernel_box(vec2 uv_lo, vec2 uv_hi, float g, float den, float g_hi)
+{
+    const float k = max(ss_clip_to_light(g_hi) - g, 0.0) / den;
+    const vec2 reach = vec2(abs(occ.a.x) + abs(occ.a.y), abs(occ.a.z) + abs(occ.a.w)) * k;
+    const vec2 lo = (occ.light.xy - occ.light.z * (occ.light.z > 0.0 ? uv_hi : uv_lo)) * k;
+    const vec2 hi = (occ.light.xy - occ.light.z * (occ.light.z > 0.0 ? uv_lo : uv_hi)) * k;
+    return vec4(uv_lo + min(lo - reach, 0.0), uv_hi + max(hi + reach, 0.0));
+}
+
+struct ss_samples
+{
+    uint level;
+    ivec2 lo, hi;       // samples, inclusive, clipped to the level
+    ivec2 texel_lo, texel_hi; // the texels they stand for
+    bool covered;       // nothing was clipped
+    bool clamped;       // the budget made the level coarser
+};
+
+ivec2 ss_floor(vec2 x)
+{
+    // Clamped first: the conversion of huge values is not defined.
+    return ivec2(floor(clamp(x, vec2(-65536.0), vec2(65536.0))));
+}
+
+uint ss_extent_level(int extent)
+{
+    const uint budget = frame.quality.x;
+    uint level = 0u;
+    if (budget != 0u && uint(extent) > budget)
+        level = uint(findMSB((uint(extent) - 1u) / budget)) + 1u;
+    return min(max(level, frame.quality.y), occ.levels.x);
+}
+
+// Place of sample 0 of a level, in texels.
+float ss_sample_offset(uint level)
+{
+    return level == 0u ? 0.5 : 0.5 * float(1u << level) + (SS_SAMPLED ? 0.5 : 0.0);
+}
+
+ss_samples ss_kernel_samples(vec4 box)
+{
+    ss_samples s;
+    const ivec2 limit = ivec2(occ.size.xy) - 1;
+    const ivec2 first = clamp(ss_floor(box.xy), ivec2(0), limit), last = clamp(ss_floor(box.zw), ivec2(0), limit);
+    const int extent = max(last.x - first.x, last.y - first.y) + 1;
+    s.level = ss_extent_level(extent);
+    s.clamped = s.level > frame.quality.y;
+    const float t = float(1u << s.level);
+    const vec2 a = (box.xy - ss_sample_offset(s.level)) / t, b = (box.zw - ss_sample_offset(s.level)) / t;
+    const ivec2 lo = ss_floor(SS_IS_PATCH ? a + 0.5 : a), hi = SS_IS_PATCH ? ss_floor(b + 0.5) : ss_floor(b) + 1;
+    const ivec2 top = ss_level_size(s.level) - 1;
+    s.covered = all(greaterThanEqual(lo, ivec2(0))) && all(lessThanEqual(hi, top));
+    s.lo = clamp(lo, ivec2(0), top);
+    s.hi = clamp(hi, ivec2(0), top);
+    s.texel_lo = s.lo << int(s.level);
+    s.texel_hi = min(((s.hi + 1) << int(s.level)) - 1, limit);
+    return s;
+}
+
+// The fan depth occluders are compared with, and half the thickness of the band around the receiver's plane that a patch
+// must leave to occlude (negative: no band): section 3, bias.
+float ss_biased(ss_receiver r, uint level, out float band)
+{
+    band = -1.0;
+    if ((frame.tiles.w & SS_FLAG_OVERRIDE_BIAS) != 0u) {
+        const float b = frame.bias.x;
+        return (occ.size.w & SS_FLAG_ORTHOGRAPHIC) != 0u ? r.g + b : (b * r.g < 1.0 ? r.g / (1.0 - b * r.g) : 3e38);
+    }
+    const float slope = abs(r.gradient.x) + abs(r.gradient.y), t = float(1u << level);
+    if (SS_IS_PATCH) {
+        band = r.eta + 0.5 * slope * t;
+        return r.g + r.eta;
+    }
+    return r.g + r.eta + (SS_SAMPLED ? 0.0 : 0.5 * slope * (t - 1.0));
+}
+
+struct ss_kernel
+{
+    uint state; // SS_STATE_LIT, SS_STATE_UMBRA, or SS_STATE_PIXELS: to be evaluated
+    ss_samples samples;
+    uint nodes;
+};
+
+// Kernel with iterative refinement, and what follows from the depth ranges alone.
+ss_kernel ss_find_kernel(ss_receiver r)
+{
+    ss_kernel k;
+    k.nodes = 0u;
+    k.state = SS_STATE_PIXELS;
+    float g_hi = -3e38;
+    for (uint layer = 0u; layer < occ.size.z; layer++)
+        g_hi = max(g_hi, ss_root(layer).y);
+    const float den = occ.light.w - occ.light.z * r.g;
+    for (int i = 0; i < SS_MAX_REFINEMENTS && k.state == SS_STATE_PIXELS; i++) {
+        k.samples = ss_kernel_samples(ss_kernel_box(r.uv, r.uv, r.g, den, g_hi));
+        if (!SS_HIERARCHY)
+            break;
+        vec2 range = vec2(-3e38);
+        for (uint layer = 0u; layer < occ.size.z; layer++)
+            range = max(range, ss_range(layer, k.samples.texel_lo, k.samples.texel_hi));
+        k.nodes += 4u * occ.size.z;
+        float band;
+        const float g = ss_biased(r, k.samples.level, band);
+        // Rise of the receiver's plane over the samples.
+        const vec2 reach = max(abs(vec2(k.samples.texel_lo) + 0.5 - r.uv), abs(vec2(k.samples.texel_hi) + 0.5 - r.uv));
+        const float rise = dot(abs(r.gradient), reach);
+        const ivec2 size = k.samples.texel_hi - k.samples.texel_lo;
+        if (!(range.y > g))
+            k.state = SS_STATE_LIT;
+        else if (k.samples.covered && range.x > (band >= 0.0 ? g + rise + band : g) && occ.light.z * range.y < occ.light.w)
+            k.state = SS_STATE_UMBRA;
+        else if (max(size.x, size.y) < 4 && (frame.tiles.w & SS_FLAG_OVERRIDE_BIAS) == 0u && !(range.y > g + rise))
+            k.state = SS_STATE_LIT; // a few texels that all lie under the receiver's own plane
+        g_hi = min(g_hi, range.y);
+    }
+    if (SS_HIERARCHY && k.state == SS_STATE_PIXELS)
+        k.samples = ss_kernel_samples(ss_kernel_box(r.uv, r.uv, r.g, den, g_hi));
+    return k;
+}
+
+#endif

@@ -1,0 +1,20 @@
+// The occluders' descriptor set, as every pass but the pyramid builders reads it.
+#ifndef SS_OCCLUDER_BINDINGS_GLSL
+#define SS_OCCLUDER_BINDINGS_GLSL
+
+layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_OCCLUDERS, std430) readonly buffer ss_occluders_buffer
+{
+    ss_occluders occ;
+    ss_plan plan;
+};
+layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_FAN_DEPTH, std430) readonly buffer ss_fan_depth_buffer
+{
+    float fan_depth[];
+};
+layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_PYRAMID, std430) readonly buffer ss_pyramid_buffer
+{
+    vec2 pyramid[];
+};
+layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_WIDE) uniform texture2DArray wide;
+
+#endif

@@ -1,0 +1,17 @@
+// Specialization constants; lib/vulkan/pipeline.c sets them all for every pipeline.
+#ifndef SS_SPECIALIZATION_GLSL
+#define SS_SPECIALIZATION_GLSL
+
+layout(constant_id = SS_SPEC_ACCEL_WIDE) const bool SS_ACCEL_WIDE = true;
+layout(constant_id = SS_SPEC_PATTERN_SIDE) const int SS_PATTERN_SIDE = 16;
+layout(constant_id = SS_SPEC_JITTERED) const bool SS_JITTERED = true;
+layout(constant_id = SS_SPEC_PRIMITIVE) const int SS_PRIMITIVE = SS_PRIMITIVE_QUAD;
+layout(constant_id = SS_SPEC_SAMPLED) const bool SS_SAMPLED = true;
+layout(constant_id = SS_SPEC_MERGE_MAXIMUM) const bool SS_MERGE_MAXIMUM = false;
+layout(constant_id = SS_SPEC_AREA) const bool SS_AREA = false;
+layout(constant_id = SS_SPEC_HIERARCHY) const bool SS_HIERARCHY = true;
+layout(constant_id = SS_SPEC_STATS) const bool SS_STATS = false;
+layout(constant_id = SS_SPEC_FILTER) const bool SS_FILTER = false;
+layout(constant_id = SS_SPEC_NORMALS) const bool SS_NORMALS = false;
+
+#endif

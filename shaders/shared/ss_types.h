@@ -1,0 +1,168 @@
+/* Structures and constants shared by C and GLSL. In C every size and offset is asserted (lib/shared.h); in GLSL the
+ * structures are std430. vec3 and bool never appear. */
+#ifndef SS_TYPES_H
+#define SS_TYPES_H
+
+#ifdef SS_HOST
+#include <stdint.h>
+typedef struct ss_vec4 {
+    float x, y, z, w;
+} ss_vec4;
+typedef struct ss_uvec4 {
+    uint32_t x, y, z, w;
+} ss_uvec4;
+typedef struct ss_ivec4 {
+    int32_t x, y, z, w;
+} ss_ivec4;
+#define SS_VEC4 ss_vec4
+#define SS_UVEC4 ss_uvec4
+#define SS_IVEC4 ss_ivec4
+#define SS_UINT uint32_t
+#define SS_FLOAT float
+#define SS_STRUCT(name) typedef struct name
+#define SS_STRUCT_END(name) name
+#else
+#define SS_VEC4 vec4
+#define SS_UVEC4 uvec4
+#define SS_IVEC4 ivec4
+#define SS_UINT uint
+#define SS_FLOAT float
+#define SS_STRUCT(name) struct name
+#define SS_STRUCT_END(name)
+#endif
+
+/* Descriptor sets and bindings; every pipeline uses the same two set layouts. */
+#define SS_SET_OCCLUDERS 0
+#define SS_BIND_OCCLUDERS 0 /* ss_occluders and the plan */
+#define SS_BIND_FAN_DEPTH 1 /* float per texel and layer: level 0 */
+#define SS_BIND_PYRAMID 2   /* vec2 (farthest, nearest) per HSM texel, levels 1 to top, layer after layer */
+#define SS_BIND_WIDE 3      /* sampled RG32F array: MSSM levels 1 to n of a layer, layer after layer */
+#define SS_BIND_WIDE_OUT 4  /* the same as storage image */
+#define SS_OCCLUDER_BINDINGS 5
+
+#define SS_SET_IO 1
+#define SS_BIND_DEPTH 0      /* sampled: the map (build) or the camera's depth */
+#define SS_BIND_NORMALS 1    /* sampled */
+#define SS_BIND_VISIBILITY 2 /* storage */
+#define SS_BIND_FRAME 3      /* ss_frame */
+#define SS_BIND_CONTROL 4    /* ss_control */
+#define SS_BIND_TILES 5      /* tile states and lists */
+#define SS_BIND_FILTER 6     /* area and bitmask occlusion per pixel */
+#define SS_IO_BINDINGS 7
+
+/* Specialization constants. */
+#define SS_SPEC_ACCEL_WIDE 0   /* 1: the pyramid's coarse part is an MSSM (MSSM, YSM) */
+#define SS_SPEC_PATTERN_SIDE 1 /* 0 (area only), 8, 16, 32 */
+#define SS_SPEC_JITTERED 2
+#define SS_SPEC_PRIMITIVE 3 /* SS_PRIMITIVE_* */
+#define SS_SPEC_SAMPLED 4   /* 1: coarse levels take one texel's depth, 0: the nearest depth */
+#define SS_SPEC_MERGE_MAXIMUM 5
+#define SS_SPEC_AREA 6      /* 1: accumulate areas */
+#define SS_SPEC_HIERARCHY 7 /* 0: no pruning, no classification */
+#define SS_SPEC_STATS 8
+#define SS_SPEC_FILTER 9   /* 1: keep values for the post filter */
+#define SS_SPEC_NORMALS 10 /* 1: normals are bound */
+#define SS_SPEC_COUNT 11
+
+#define SS_PRIMITIVE_PATCH 0
+#define SS_PRIMITIVE_PATCH_EXTENDED 1
+#define SS_PRIMITIVE_QUAD 2
+#define SS_PRIMITIVE_QUAD_RECTANGLE 3
+
+#define SS_TILE 8          /* pixels a side */
+#define SS_MAX_LEVELS 16   /* levels of a 32768 texel map */
+#define SS_MAX_REFINEMENTS 3
+#define SS_DISPATCH_WIDTH 32768 /* indirect dispatches wrap into y beyond this */
+
+#define SS_STATE_LIT 0
+#define SS_STATE_UMBRA 1
+#define SS_STATE_PIXELS 2 /* values differ within the tile */
+
+#define SS_FLAG_ORTHOGRAPHIC 1u
+#define SS_FLAG_DISC 2u
+#define SS_FLAG_OVERRIDE_BIAS 4u
+
+/* The light and its maps in map space: docs/numerics.md, sections 1 and 2. */
+SS_STRUCT(ss_occluders)
+{
+    SS_VEC4 a;           /* A by rows */
+    SS_VEC4 a_inverse;   /* its inverse by rows */
+    SS_VEC4 light;       /* U.x, U.y, delta, epsilon */
+    SS_VEC4 depths;      /* map's part of eta; tangent (or world size) of a texel in u, v; fan depth of the far plane */
+    SS_VEC4 extent;      /* half side of the square that areas are clipped to; 1 / its area; unused */
+    SS_UVEC4 size;       /* width, height, layers, SS_FLAG_* */
+    SS_UVEC4 levels;     /* top of the pyramid, join level, wide levels allocated, unused */
+    SS_UVEC4 strides;    /* texels per layer: fan depth, pyramid; unused */
+    SS_UVEC4 offsets[4]; /* first texel of pyramid level i at [i / 4][i % 4]; level 0 unused */
+}
+SS_STRUCT_END(ss_occluders);
+
+/* Indirect dispatch arguments of one wide level, and what was decided; written by hierarchy_plan. */
+SS_STRUCT(ss_plan)
+{
+    SS_UVEC4 args[SS_MAX_LEVELS]; /* groups x, y, z; unused */
+    SS_UVEC4 built;               /* wide levels built, wide levels skipped; unused */
+}
+SS_STRUCT_END(ss_plan);
+
+/* One visibility call: the receiver side. */
+SS_STRUCT(ss_frame)
+{
+    SS_VEC4 to_map[4];     /* rows: (ndc x, ndc y, depth, 1) -> homogeneous u, v, g, w */
+    SS_VEC4 normal_map[4]; /* xyz: rows of d(u w, v w, g w, w)/d(world); [0].w: sign of their orientation */
+    SS_VEC4 camera;        /* far depth; ndc per pixel in x, y; camera's rho */
+    SS_VEC4 bias;          /* override in world units; unused */
+    SS_IVEC4 area;         /* render area: x, y, width, height */
+    SS_UVEC4 tiles;        /* tiles in x, y, their number, SS_FLAG_* */
+    SS_UVEC4 quality;      /* budget (0: none), least level, row length of the filter values, 1 if depth is reversed */
+}
+SS_STRUCT_END(ss_frame);
+
+/* Indirect arguments and counters; cleared by the host's update before each call. Counters are low, high words. */
+SS_STRUCT(ss_control)
+{
+    SS_UVEC4 pixels_args;   /* groups x, y, z; tiles in the undecided list */
+    SS_UVEC4 evaluate_args; /* likewise, penumbra list */
+    SS_UINT stats[20];      /* softsh_stats, as pairs of words */
+    SS_UINT unused[4];
+}
+SS_STRUCT_END(ss_control);
+
+#define SS_STAT_PIXELS 0
+#define SS_STAT_LIT 1
+#define SS_STAT_UMBRA 2
+#define SS_STAT_ACTIVE 3
+#define SS_STAT_NODES 4
+#define SS_STAT_PRIMITIVES 5
+#define SS_STAT_TILES 6
+#define SS_STAT_UNDECIDED 7
+#define SS_STAT_PENUMBRA 8
+#define SS_STAT_CLAMPED 9
+
+/* Push constants of the passes that need some. */
+SS_STRUCT(ss_convert_push)
+{
+    SS_FLOAT depth_scale, depth_offset, far_depth;
+    SS_UINT layer;
+    SS_IVEC4 rect; /* x, y of the map in the image; unused */
+}
+SS_STRUCT_END(ss_convert_push);
+
+SS_STRUCT(ss_level_push)
+{
+    SS_UINT level; /* to build */
+    SS_UINT layer;
+    SS_UINT unused[2];
+}
+SS_STRUCT_END(ss_level_push);
+
+SS_STRUCT(ss_filter_push)
+{
+    SS_UINT source; /* which of the two bitmask planes is read: 0 or 1 */
+    SS_UINT last;   /* 1: write the visibility image */
+    SS_UINT plane;  /* floats per plane */
+    SS_UINT unused;
+}
+SS_STRUCT_END(ss_filter_push);
+
+#endif
