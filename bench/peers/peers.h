@@ -23,8 +23,9 @@ typedef struct peer_settings {
      * the way from the light. For a directional light: the blocker's distance in world units instead; 0 means a
      * twentieth of the map's depth range. */
     double pcf_kernel;
-    /* pcss: distance along the map's axis, from the projection centre (plane), of the nearest blocker there can be, in
-     * world units; 0 means the map's near plane. The smaller the search, the better its taps. */
+    /* pcss: distance along the map's axis of the nearest blocker there can be, in world units, from the projection
+     * centre, or from the near plane of an orthographic map; 0 means the near plane. What a renderer that fits its near
+     * planes to the scene would have: the smaller the search, the better its taps and the fewer pixels to filter. */
     double nearest_blocker;
 } peer_settings;
 
