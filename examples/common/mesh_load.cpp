@@ -35,6 +35,9 @@ static glm::vec3 material_colour(const aiScene &scene, const aiMesh &part, const
     const aiMaterial &material = *scene.mMaterials[part.mMaterialIndex];
     textures += static_cast<int>(material.GetTextureCount(aiTextureType_DIFFUSE));
     textures += static_cast<int>(material.GetTextureCount(aiTextureType_BASE_COLOR));
+    // assimp's stand-in where the file has no material.
+    if (std::string(material.GetName().C_Str()) == AI_DEFAULT_MATERIAL_NAME)
+        return fallback;
     // The factor of a textured material is white and says nothing.
     if (textures > 0 || aiGetMaterialColor(&material, AI_MATKEY_COLOR_DIFFUSE, &colour) != AI_SUCCESS)
         return fallback;

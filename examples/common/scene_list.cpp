@@ -11,7 +11,7 @@
 namespace
 {
 
-const glm::vec3 floor_colour(0.56f, 0.54f, 0.51f);
+const glm::vec3 floor_colour(0.50f, 0.48f, 0.45f);
 const glm::vec3 clay(0.66f, 0.29f, 0.18f);
 const glm::vec3 ochre(0.72f, 0.50f, 0.16f);
 const glm::vec3 teal(0.13f, 0.42f, 0.44f);
