@@ -9,8 +9,8 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <memory>
-#include <sstream>
 
 #include <cJSON.h>
 
@@ -231,11 +231,10 @@ std::string read_text_file(const std::string &path)
     if (fs::file_size(path, code) > max_json_size || code)
         fail("%s: unreadable or larger than %ju bytes", path.c_str(), max_json_size);
     std::ifstream stream(path, std::ios::binary);
-    std::ostringstream text;
-    text << stream.rdbuf();
-    if (!stream || !text)
+    std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    if (!stream)
         fail("%s: cannot be read", path.c_str());
-    return text.str();
+    return text;
 }
 
 // Nine significant digits identify a float; matrices were doubles, and seventeen identify those.
@@ -368,8 +367,11 @@ Case load_case(const std::string &folder)
     const char *end = nullptr;
     const Json json(cJSON_ParseWithLengthOpts(text.c_str(), text.size() + 1, &end, 1));
     if (!json) {
-        const long line = end ? std::count(text.c_str(), end, '\n') + 1 : 1;
-        fail("%s: not valid JSON near line %ld", path.c_str(), line);
+        // Quoted up to the end of its line: NaN and Infinity, which some writers emit, are then seen at once.
+        const std::string rest = end ? end : "";
+        const auto line = end ? std::count(text.c_str(), end, '\n') + 1 : 1;
+        fail("%s: not valid JSON at line %td: '%s'", path.c_str(), line,
+             rest.substr(0, rest.find('\n')).substr(0, 40).c_str());
     }
 
     const Value root{json.get(), path, ""};

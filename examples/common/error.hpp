@@ -10,11 +10,7 @@ struct Error : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-#if defined(__GNUC__)
-__attribute__((format(printf, 1, 2)))
-#endif
-[[noreturn]] inline void
-fail(const char *format, ...)
+[[noreturn, gnu::format(printf, 1, 2)]] inline void fail(const char *format, ...)
 {
     char text[1024];
     va_list arguments;
