@@ -14,9 +14,9 @@ extern "C" {
 #endif
 
 typedef struct gpu_info {
-    const char *device;     /* index or part of a device's name; NULL: the first GPU, else the software driver */
-    bool validation;        /* the validation layer with synchronization validation; its absence is an error */
-    bool debug_utils;       /* enable VK_EXT_debug_utils even without validation */
+    const char *device; /* index or part of a device's name; NULL: the first GPU, else the software driver */
+    bool validation;    /* the validation layer with synchronization validation; its absence is an error */
+    bool debug_utils;   /* enable VK_EXT_debug_utils even without validation */
 } gpu_info;
 
 typedef struct gpu {
@@ -39,7 +39,7 @@ typedef struct gpu {
 typedef struct gpu_image_info {
     VkFormat format;
     uint32_t width, height;
-    uint32_t layers; /* 0 means 1; more than 1 makes the view a 2D array view */
+    uint32_t layers;         /* 0 means 1; more than 1 makes the view a 2D array view */
     VkImageUsageFlags usage; /* transfer source and destination are added */
 } gpu_image_info;
 
