@@ -79,19 +79,23 @@ void reference_gradient_clamp(const reference_map *map, double g, double gradien
     }
 }
 
-double reference_eta(const reference_map *map, const reference_bias *bias, double g, double dg_dcamera,
+double reference_eta(const reference_map *map, const reference_bias *bias, double g, double away_per_depth,
                      const double gradient[2])
 {
     const double rounding = ldexp(1.0, -20) * fmax(fabs(g), fabs(gradient[0]) + fabs(gradient[1]));
-    return fabs(map->depth_scale) * bias->map_precision + fabs(dg_dcamera) * bias->camera_precision + rounding;
+    return fabs(map->depth_scale) * bias->map_precision + fabs(away_per_depth) * bias->camera_precision + rounding;
 }
 
-/* dg along a world-space step at a point. */
-static double g_derivative(const reference_map *map, double g, const double step[3])
+/* Derivative of (u, v, g) along a world-space step at a point in front of the projection centre. */
+static void derive_along(const reference_map *map, const double world[3], const double step[3], double out[3])
 {
-    if (map->perspective)
-        return -g * g * reference_dot(map->axis, step);
-    return -reference_dot(map->axis, step);
+    const double size[2] = {map->width, map->height};
+    const double w = reference_dot(map->rows[3], world) + map->rows[3][3], dw = reference_dot(map->rows[3], step);
+    for (int i = 0; i < 2; ++i) {
+        const double x = reference_dot(map->rows[i], world) + map->rows[i][3], dx = reference_dot(map->rows[i], step);
+        out[i] = 0.5 * size[i] * (dx * w - x * dw) / (w * w);
+    }
+    out[2] = map->perspective ? -map->axis_length * dw / (w * w) : -reference_dot(map->axis, step);
 }
 
 static bool locate(const reference_map *map, const reference_camera *camera, const reference_camera_image *image,
@@ -170,7 +174,11 @@ void reference_receiver_derive(reference_receiver *out, const reference_map *map
     else
         gradient_from_depth(map, camera, image, x, y, uvg, out->gradient);
     reference_gradient_clamp(map, uvg[2], out->gradient);
-    out->eta = reference_eta(map, bias, uvg[2], g_derivative(map, uvg[2], derivative), out->gradient);
+    /* An error of the camera's depth moves the point in (u, v) as well; on its own plane that is no error. */
+    double moved[3];
+    derive_along(map, world, derivative, moved);
+    const double away = moved[2] - out->gradient[0] * moved[0] - out->gradient[1] * moved[1];
+    out->eta = reference_eta(map, bias, uvg[2], away, out->gradient);
     out->override_bias = bias->override_bias;
     out->bias = bias->bias;
 }

@@ -58,8 +58,9 @@ void reference_plane_gradient(const reference_map *map, const double uvg[3], con
                               double gradient[2]);
 /* Clamps a gradient to a slope of 89.5 degrees; a NaN becomes 0. */
 void reference_gradient_clamp(const reference_map *map, double g, double gradient[2]);
-/* The automatic bias; dg_dcamera is the derivative of g by the camera's device depth. */
-double reference_eta(const reference_map *map, const reference_bias *bias, double g, double dg_dcamera,
+/* The automatic bias. `away_per_depth` is how fast, in units of g, the point leaves the receiver's plane when the
+ * camera's device depth changes. */
+double reference_eta(const reference_map *map, const reference_bias *bias, double g, double away_per_depth,
                      const double gradient[2]);
 
 #endif

@@ -481,7 +481,8 @@ static void camera_pixels_become_receivers(void **unused)
     }
 }
 
-static void derivative_by_camera_depth(void **unused)
+/* How far from its plane a receiver gets by an error of the camera's depth, against two points of the pixel's ray. */
+static void bias_covers_the_camera_depth(void **unused)
 {
     (void)unused;
     stage s;
@@ -491,14 +492,40 @@ static void derivative_by_camera_depth(void **unused)
         const reference_camera_image image = {s.depth, s.normals};
         double low[3], high[3], unused_derivative[3], uvg[2][3];
         const double depth = (double)s.depth[3 * 12 + x];
+        s.normals[3 * (3 * 12 + x)] = 0.05f * (float)x;
+        s.normals[3 * (3 * 12 + x) + 2] = -0.7f;
         assert_true(reference_camera_unproject(&s.camera, x, 3, depth - step, low, unused_derivative));
         assert_true(reference_camera_unproject(&s.camera, x, 3, depth + step, high, unused_derivative));
         assert_true(reference_map_project(&s.map, low, uvg[0]) && reference_map_project(&s.map, high, uvg[1]));
-        const double slope = fabs(uvg[1][2] - uvg[0][2]) / (2.0 * step);
         const reference_bias bias = {.map_precision = 0.0, .camera_precision = 1.0};
         reference_receiver receiver;
         reference_receiver_derive(&receiver, &s.map, &s.camera, &image, &bias, x, 3);
-        assert_near(receiver.eta - ldexp(0.25, -20), slope, 1e-6);
+        assert_int_equal(receiver.state, REFERENCE_RECEIVER_ACTIVE);
+        assert_true(fabs(receiver.gradient[1]) > 1e-4);
+        double away = uvg[1][2] - uvg[0][2];
+        for (int i = 0; i < 2; ++i)
+            away -= receiver.gradient[i] * (uvg[1][i] - uvg[0][i]);
+        assert_near(receiver.eta - ldexp(0.25, -20), fabs(away) / (2.0 * step), 1e-5);
+    }
+}
+
+static void orthographic_cameras_look_along_minus_z(void **unused)
+{
+    (void)unused;
+    stage s;
+    build_stage(&s, REFERENCE_DEPTH_NORMAL);
+    for (int reversed = 0; reversed < 2; ++reversed) {
+        double projection[16], world[3], derivative[3], view_point[4];
+        reference_orthographic((const double[4]){-6, 6, -4, 4}, 1.0, 11.0, (reference_depth_range)reversed, projection);
+        assert_true(reference_camera_derive(&s.camera, s.camera_view, projection, 12, 8));
+        assert_true(s.camera.far_depth == (reversed ? 0.0 : 1.0));
+        assert_false(reference_camera_unproject(&s.camera, 0, 0, s.camera.far_depth, world, derivative));
+        assert_true(reference_camera_unproject(&s.camera, 7, 5, reversed ? 0.75 : 0.25, world, derivative));
+        reference_matrix_apply(s.camera_view, (const double[4]){world[0], world[1], world[2], 1.0}, view_point);
+        assert_near(view_point[0], 1.5, 1e-12);
+        assert_near(view_point[1], 1.5, 1e-12);
+        assert_near(view_point[2], -3.5, 1e-12);
+        assert_near(sqrt(reference_dot(derivative, derivative)), 10.0, 1e-12);
     }
 }
 
@@ -590,7 +617,8 @@ int main(void)
         cmocka_unit_test(planes_are_affine),
         cmocka_unit_test(gradients_stop_at_a_steep_slope),
         cmocka_unit_test(camera_pixels_become_receivers),
-        cmocka_unit_test(derivative_by_camera_depth),
+        cmocka_unit_test(bias_covers_the_camera_depth),
+        cmocka_unit_test(orthographic_cameras_look_along_minus_z),
         cmocka_unit_test(what_is_no_receiver),
         cmocka_unit_test(neighbours_across_edges_are_left_out),
         cmocka_unit_test(receivers_behind_the_light_are_known),
