@@ -392,6 +392,8 @@ static void gradients_stop_at_a_steep_slope(void **unused)
     reference_look_at(eye, target, up, view);
     reference_map map;
     reference_perspective((const double[4]){-1, 1, -2, 2}, 0.1, 10.0, REFERENCE_DEPTH_NORMAL, projection);
+    for (int i = 0; i < 16; ++i)
+        projection[i] *= 3.0;
     softsh_light light = rectangle(eye, x, y);
     assert_true(reference_map_derive(&map, view, projection, 10, 10, &light));
     assert_near(map.texel[0], 0.2, 1e-15);
