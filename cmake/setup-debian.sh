@@ -7,7 +7,7 @@ packages="
 build-essential cmake git ninja-build pkg-config
 glslang-tools spirv-tools
 libvulkan-dev libvulkan-volk-dev mesa-vulkan-drivers vulkan-validationlayers vulkan-tools
-libglm-dev libopenimageio-dev openimageio-tools libassimp-dev libembree-dev libglfw3-dev
+libglm-dev libopenimageio-dev openimageio-tools libassimp-dev libembree-dev
 libcmocka-dev libcjson-dev
 gnuplot-nox abigail-tools
 "

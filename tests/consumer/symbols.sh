@@ -6,6 +6,12 @@ set -eu
 shared=$1
 static=$2
 status=0
+for file in "$shared" "$static"; do
+    if [ ! -s "$file" ]; then
+        echo "symbol test: $file is missing" >&2
+        exit 1
+    fi
+done
 
 report()
 {
@@ -23,11 +29,11 @@ names()
 }
 
 exported=$(names -D --defined-only "$shared")
-[ "$(echo "$exported" | grep -c '^softsh_')" -ge 10 ] || report "too few exports" "$exported"
+[ "$(echo "$exported" | grep -c '^softsh_')" -ge 10 ] || report "too few exports" "${exported:-none}"
 report "exported, but not softsh_*" "$(echo "$exported" | grep -v '^softsh_' || true)"
 
 global=$(names --defined-only --extern-only "$static")
-[ "$(echo "$global" | grep -c '^softsh_')" -ge 10 ] || report "too few globals in the archive" "$global"
+[ "$(echo "$global" | grep -c '^softsh_')" -ge 10 ] || report "too few globals in the archive" "${global:-none}"
 report "global in the archive, but neither softsh_* nor softshi_*" "$(echo "$global" | grep -vE '^softshi?_' || true)"
 
 undefined=$(names --undefined-only "$static" | grep -vE '^(softshi?_|_GLOBAL_OFFSET_TABLE_)' || true)
