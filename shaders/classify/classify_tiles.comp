@@ -14,6 +14,8 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
+const int MAX_PLANE_SIDE = 32; // texels
+
 // The receivers of a tile, in map space.
 struct tile_bounds
 {
@@ -21,6 +23,7 @@ struct tile_bounds
     vec2 lo, hi;        // box of (u, v)
     float g_lo, g_hi;
     vec3 plane;         // g >= plane.x u + plane.y v + plane.z for every receiver
+    float thickness;    // how far receivers rise above that plane
     float eta;
 };
 
@@ -55,23 +58,28 @@ tile_bounds bound(ivec2 corner, ivec2 last, vec3 depth_plane, vec2 residual)
     if (!(det * det > 1e-6 * dot(e.xy, e.xy) * dot(f.xy, f.xy)))
         gradient = vec2(0.0);
     gradient = ss_clamp_gradient(gradient, t.g_hi);
-    float base = 3e38;
-    for (int i = 0; i < 8; i++)
+    float base = 3e38, top = -3e38;
+    for (int i = 0; i < 8; i++) {
         base = min(base, p[i].z - dot(gradient, p[i].xy));
+        top = max(top, p[i].z - dot(gradient, p[i].xy));
+    }
     t.plane = vec3(gradient, base);
+    t.thickness = top - base;
     t.usable = t.usable && t.hi.x - t.lo.x < 1e6 && t.hi.y - t.lo.y < 1e6 && t.g_hi - t.g_lo < 1e30;
     return t;
 }
 
-// Whether no texel of the box rises above the receivers' plane by more than the plane itself does within a cell of at most
-// a quarter of the box: a footprint the pixels' own bias allows as well.
+// Whether no texel of the box rises above the receivers' plane by more than the plane itself does within a cell of 4 x 4
+// texels, a footprint the pixels' own test allows as well. Only for tiles that are one plane, and boxes of a few cells.
 bool lies_under_plane(tile_bounds t, uint layer, ivec2 lo, ivec2 hi)
 {
     const int side = max(hi.x - lo.x, hi.y - lo.y) + 1;
-    const uint level = side <= 4 ? 0u : min(uint(findMSB(side - 1)) - 1u, occ.levels.x);
+    const uint level = min(side <= 8 ? 0u : side <= 16 ? 1u : 2u, occ.levels.x);
     const ivec2 a = lo >> int(level), b = hi >> int(level);
     const float cell = float(1u << level), footprint = 0.5 * cell * (abs(t.plane.x) + abs(t.plane.y)) + t.eta;
-    bool under = true;
+    bool under = side <= MAX_PLANE_SIDE && t.thickness <= abs(t.plane.x) + abs(t.plane.y) + 4.0 * t.eta;
+    if (!under)
+        return false;
     for (int y = a.y; y <= b.y; y++) {
         for (int x = a.x; x <= b.x; x++) {
             const vec2 at = (vec2(x, y) + 0.5) * cell;

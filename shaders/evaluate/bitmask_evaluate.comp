@@ -59,37 +59,41 @@ float sample_depth(uint layer, ivec2 at, uint level)
     return ss_load_pyramid(layer, level, at).y;
 }
 
-bool is_in_front_of_light(float g)
+bool occludes(float g, vec2 at, back_projection b, ss_receiver r, float band)
 {
-    return occ.light.w - occ.light.z * g > 0.0;
+    // Over the plane through the biased receiver: blocks of nearest depths lift the surface and the receiver alike.
+    const float height = g - (b.g - r.eta + dot(r.gradient, at - r.uv));
+    return g > b.g && occ.light.w - occ.light.z * g > 0.0 && (band < 0.0 || ss_is_off_plane(r, height, band));
 }
 
-void add_quads(uint layer, ss_samples s, back_projection b)
+struct vertex
 {
+    vec2 at; // sample coordinates
+    bool occludes;
+};
+
+vertex load_vertex(uint layer, ivec2 at, uint level, back_projection b, ss_receiver r, float band)
+{
+    const float g = sample_depth(layer, at, level);
+    const vec2 place = sample_place(at, level);
+    return vertex(back_project(b, place, g), occludes(g, place, b, r, band));
+}
+
+void add_quads(uint layer, ss_samples s, back_projection b, ss_receiver r, float band)
+{
+    const ivec2 up = ivec2(0, 1);
     for (int y = s.lo.y; y < s.hi.y; y++) {
-        const ivec2 first = ivec2(s.lo.x, y);
-        float low = sample_depth(layer, first, s.level), high = sample_depth(layer, first + ivec2(0, 1), s.level);
-        vec2 low_at = back_project(b, sample_place(first, s.level), low);
-        vec2 high_at = back_project(b, sample_place(first + ivec2(0, 1), s.level), high);
-        bool left = low > b.g && high > b.g && is_in_front_of_light(max(low, high));
+        vertex low = load_vertex(layer, ivec2(s.lo.x, y), s.level, b, r, band);
+        vertex high = load_vertex(layer, ivec2(s.lo.x, y) + up, s.level, b, r, band);
         for (int x = s.lo.x + 1; x <= s.hi.x; x++) {
-            low = sample_depth(layer, ivec2(x, y), s.level);
-            high = sample_depth(layer, ivec2(x, y + 1), s.level);
-            const vec2 p = back_project(b, sample_place(ivec2(x, y), s.level), low);
-            const vec2 q = back_project(b, sample_place(ivec2(x, y + 1), s.level), high);
-            const bool right = low > b.g && high > b.g && is_in_front_of_light(max(low, high));
-            if (left && right)
-                ss_add_quad(low_at, p, q, high_at);
-            left = right;
-            low_at = p;
-            high_at = q;
+            const vertex next_low = load_vertex(layer, ivec2(x, y), s.level, b, r, band);
+            const vertex next_high = load_vertex(layer, ivec2(x, y) + up, s.level, b, r, band);
+            if (low.occludes && high.occludes && next_low.occludes && next_high.occludes)
+                ss_add_quad(low.at, next_low.at, next_high.at, high.at);
+            low = next_low;
+            high = next_high;
         }
     }
-}
-
-bool patch_occludes(float g, vec2 at, back_projection b, ss_receiver r, float band)
-{
-    return g > b.g && is_in_front_of_light(g) && !(abs(g - (r.g + dot(r.gradient, at - r.uv))) <= band);
 }
 
 void add_patches(uint layer, ss_samples s, back_projection b, ss_receiver r, float band)
@@ -100,7 +104,7 @@ void add_patches(uint layer, ss_samples s, back_projection b, ss_receiver r, flo
             const ivec2 at = ivec2(x, y);
             const float g = sample_depth(layer, at, s.level);
             const vec2 place = sample_place(at, s.level);
-            if (!patch_occludes(g, place, b, r, band))
+            if (!occludes(g, place, b, r, band))
                 continue;
             vec2 lo = back_project(b, place - half_size, g);
             const vec2 hi = back_project(b, place + half_size, g);
@@ -108,9 +112,9 @@ void add_patches(uint layer, ss_samples s, back_projection b, ss_receiver r, flo
                 const ivec2 left = max(at - ivec2(1, 0), ivec2(0)), below = max(at - ivec2(0, 1), ivec2(0));
                 const float g_left = sample_depth(layer, left, s.level), g_below = sample_depth(layer, below, s.level);
                 const vec2 at_left = sample_place(left, s.level), at_below = sample_place(below, s.level);
-                if (x > 0 && patch_occludes(g_left, at_left, b, r, band))
+                if (x > 0 && occludes(g_left, at_left, b, r, band))
                     lo.x = min(lo.x, back_project(b, at_left + half_size, g_left).x);
-                if (y > 0 && patch_occludes(g_below, at_below, b, r, band))
+                if (y > 0 && occludes(g_below, at_below, b, r, band))
                     lo.y = min(lo.y, back_project(b, at_below + half_size, g_below).y);
             }
             ss_add_rectangle(lo, hi);
@@ -151,7 +155,7 @@ void main()
         if (SS_IS_PATCH)
             add_patches(layer, k.samples, b, r, band);
         else
-            add_quads(layer, k.samples, b);
+            add_quads(layer, k.samples, b, r, band);
         if (SS_MERGE_MAXIMUM || layer + 1u == occ.size.z) {
             if (SS_PATTERN_SIDE != 0)
                 mask_occlusion = max(mask_occlusion, ss_mask_occlusion(disc));

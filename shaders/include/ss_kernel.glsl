@@ -72,8 +72,11 @@ ss_samples ss_kernel_samples(vec4 box)
     return s;
 }
 
-// The fan depth occluders are compared with, and half the thickness of the band around the receiver's plane that a patch
-// must leave to occlude (negative: no band): section 3, bias.
+// Half the thickness of the band around the receiver's plane that counts as the receiver's own surface, in texels' rise. A
+// patch is flat where the surface rises through it; a quad's vertices lie on the surface, up to noise.
+const float SS_BAND = SS_IS_PATCH ? 0.5 : 0.05;
+
+// The fan depth occluders are compared with, and that thickness (negative: none): docs/numerics.md, section 3, bias.
 float ss_biased(ss_receiver r, uint level, out float band)
 {
     band = -1.0;
@@ -82,11 +85,16 @@ float ss_biased(ss_receiver r, uint level, out float band)
         return (occ.size.w & SS_FLAG_ORTHOGRAPHIC) != 0u ? r.g + b : (b * r.g < 1.0 ? r.g / (1.0 - b * r.g) : 3e38);
     }
     const float slope = abs(r.gradient.x) + abs(r.gradient.y), t = float(1u << level);
-    if (SS_IS_PATCH) {
-        band = r.eta + 0.5 * slope * t;
-        return r.g + r.eta;
-    }
-    return r.g + r.eta + (SS_SAMPLED ? 0.0 : 0.5 * slope * (t - 1.0));
+    band = r.eta + SS_BAND * slope * t;
+    // The nearest depth of a block lifts the whole plane by as much as it rises from the block's centre.
+    const float lift = SS_IS_PATCH || SS_SAMPLED ? 0.0 : 0.5 * slope * (t - 1.0);
+    return r.g + r.eta + lift;
+}
+
+// Whether a sample at height `height` over the receiver's plane is part of something else.
+bool ss_is_off_plane(ss_receiver r, float height, float band)
+{
+    return !((r.smooth_surface ? height : abs(height)) <= band);
 }
 
 struct ss_kernel

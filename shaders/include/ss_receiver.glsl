@@ -3,6 +3,10 @@
 #ifndef SS_RECEIVER_GLSL
 #define SS_RECEIVER_GLSL
 
+// Share of its own rise by which a neighbour may leave the plane before the plane is not trusted. Measured: less excludes
+// nothing on curved surfaces, more excludes contacts on noisy meshes.
+const float SS_SMOOTH = 0.03;
+
 struct ss_receiver
 {
     bool valid; // something was rendered here and it lies in front of the map and inside it
@@ -11,6 +15,7 @@ struct ss_receiver
     vec2 gradient; // of g over (u, v) on the receiver's plane
     float eta;     // precision of the depths compared with g
     bool away;     // all of the light lies behind the plane its normal gives
+    bool smooth_surface; // the plane is good enough to tell what lies below it
 };
 
 bool ss_is_receiver(float depth)
@@ -37,17 +42,13 @@ float ss_load_depth(ivec2 pixel)
     return texelFetch(camera_depth, p, 0).x;
 }
 
-// Change of g with the camera's device depth, for the share of eta that the camera's precision has.
-float ss_depth_slope(vec4 h)
-{
-    return (frame.to_map[2].z - h.z / h.w * frame.to_map[3].z) / h.w;
-}
-
+// The camera's depth is precise to rho: how far that moves the point off its own plane, plus the map's share and rounding.
 float ss_eta(vec4 h, vec2 gradient)
 {
-    const float g = abs(h.z / h.w);
-    return occ.depths.x + abs(ss_depth_slope(h)) * frame.camera.w +
-           exp2(-20.0) * max(g, max(abs(gradient.x), abs(gradient.y)));
+    const vec3 here = h.xyz / h.w;
+    const vec3 per_depth = (vec3(frame.to_map[0].z, frame.to_map[1].z, frame.to_map[2].z) - here * frame.to_map[3].z) / h.w;
+    return occ.depths.x + abs(per_depth.z - dot(gradient, per_depth.xy)) * frame.camera.w +
+           exp2(-20.0) * max(abs(here.z), abs(gradient.x) + abs(gradient.y));
 }
 
 vec2 ss_clamp_gradient(vec2 gradient, float g)
@@ -59,39 +60,40 @@ vec2 ss_clamp_gradient(vec2 gradient, float g)
                 abs(gradient.y) < 1e30 ? clamp(gradient.y, -limit.y, limit.y) : 0.0);
 }
 
-// Difference to the neighbour one step along an axis whose g is nearer; false if there is none.
-bool ss_neighbour_difference(ivec2 pixel, ivec2 axis, vec3 here, out vec3 difference)
+// Difference in (u, v, g) to a neighbour; false if there is none.
+bool ss_neighbour_difference(ivec2 at, vec3 here, out vec3 difference)
 {
-    difference = vec3(0.0);
-    bool found = false;
-    for (int i = -1; i <= 1; i += 2) {
-        const ivec2 at = pixel + i * axis;
-        if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, frame.area.zw)))
-            continue;
-        const float depth = texelFetch(camera_depth, at + frame.area.xy, 0).x;
-        const vec4 h = ss_to_map(vec2(at) + 0.5, depth);
-        if (!ss_is_receiver(depth) || !ss_is_in_front(h))
-            continue;
-        const vec3 d = h.xyz / h.w - here;
-        if (!found || abs(d.z) < abs(difference.z)) {
-            difference = d;
-            found = true;
-        }
-    }
-    return found;
+    const float depth = ss_load_depth(at);
+    const vec4 h = ss_to_map(vec2(at) + 0.5, depth);
+    difference = h.xyz / h.w - here;
+    return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, frame.area.zw)) && ss_is_receiver(depth) &&
+           ss_is_in_front(h);
 }
 
-vec2 ss_gradient_from_depth(ivec2 pixel, vec3 here)
+// Gradient from the neighbour on each axis whose g is nearer. `smooth_surface` says whether all four neighbours agree on
+// the plane: noise and edges do not.
+vec2 ss_gradient_from_depth(ivec2 pixel, vec3 here, float eta, out bool smooth_surface)
 {
-    vec3 dx, dy;
-    const bool x = ss_neighbour_difference(pixel, ivec2(1, 0), here, dx);
-    const bool y = ss_neighbour_difference(pixel, ivec2(0, 1), here, dy);
+    vec3 d[4];
+    bool found[4];
+    for (int i = 0; i < 4; i++) {
+        const int step = 2 * (i & 1) - 1;
+        found[i] = ss_neighbour_difference(pixel + (i < 2 ? ivec2(step, 0) : ivec2(0, step)), here, d[i]);
+    }
+    const vec3 dx = found[0] && (!found[1] || abs(d[0].z) <= abs(d[1].z)) ? d[0] : d[1];
+    const vec3 dy = found[2] && (!found[3] || abs(d[2].z) <= abs(d[3].z)) ? d[2] : d[3];
     const float det = dx.x * dy.y - dx.y * dy.x;
     const float scale = dot(dx.xy, dx.xy) * dot(dy.xy, dy.xy);
+    smooth_surface = false;
     // Two directions that differ by less than a thousandth of a radian do not span a plane.
-    if (!x || !y || !(det * det > 1e-6 * scale))
+    if (!(found[0] || found[1]) || !(found[2] || found[3]) || !(det * det > 1e-6 * scale))
         return vec2(0.0);
-    return vec2(dx.z * dy.y - dy.z * dx.y, dy.z * dx.x - dx.z * dy.x) / det;
+    const vec2 gradient = vec2(dx.z * dy.y - dy.z * dx.y, dy.z * dx.x - dx.z * dy.x) / det;
+    smooth_surface = true;
+    for (int i = 0; i < 4; i++)
+        smooth_surface = smooth_surface && found[i] &&
+                         abs(d[i].z - dot(gradient, d[i].xy)) <= 4.0 * eta + SS_SMOOTH * dot(abs(gradient), abs(d[i].xy));
+    return gradient;
 }
 
 // Gradient of the plane with world normal `n` through the point, and whether it faces away from all of the light.
@@ -131,8 +133,9 @@ ss_receiver ss_load_receiver(ivec2 pixel)
             from_depth = false;
         }
     }
+    r.smooth_surface = !from_depth;
     if (from_depth)
-        r.gradient = ss_gradient_from_depth(pixel, here);
+        r.gradient = ss_gradient_from_depth(pixel, here, ss_eta(h, vec2(0.0)), r.smooth_surface);
     r.gradient = ss_clamp_gradient(r.gradient, r.g);
     r.eta = ss_eta(h, r.gradient);
     return r;

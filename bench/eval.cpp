@@ -1,0 +1,151 @@
+// softshadow-eval: one technique on one case, its error against the case's truth, its time and its counts.
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <getopt.h>
+
+#include "error.hpp"
+#include "row.hpp"
+
+namespace
+{
+
+struct Options {
+    std::string case_dir, technique = "auto", out, json, device;
+    std::vector<std::string> settings;
+    int repeat = 5;
+};
+
+void print_help()
+{
+    std::printf("softshadow-eval CASE_DIR [--technique T] [--set K=V ...] [--repeat N] [--out DIR] [--json FILE]\n"
+                "                [--device N|NAME]\n\n"
+                "Runs one technique (default: auto) on a case: a folder with case.json and depth buffers as EXR files.\n"
+                "Prints error against the case's truth and the median time of N runs (default 5; 0: one, not timed).\n"
+                "--out writes visibility.exr, visibility.png and, with a truth, error.png (0 to 0.5); --json the row.\n\n%s",
+                technique_help().c_str());
+}
+
+[[noreturn]] void usage_error(const char *text)
+{
+    std::fprintf(stderr, "softshadow-eval: %s; see --help\n", text);
+    std::exit(2);
+}
+
+Options parse(int argc, char **argv)
+{
+    static const option long_options[] = {{"technique", required_argument, nullptr, 't'},
+                                          {"set", required_argument, nullptr, 's'},
+                                          {"repeat", required_argument, nullptr, 'r'},
+                                          {"out", required_argument, nullptr, 'o'},
+                                          {"json", required_argument, nullptr, 'j'},
+                                          {"device", required_argument, nullptr, 'd'},
+                                          {"help", no_argument, nullptr, 'h'},
+                                          {nullptr, 0, nullptr, 0}};
+    Options o;
+    for (int c; (c = getopt_long(argc, argv, "", long_options, nullptr)) != -1;) {
+        char *end = nullptr;
+        switch (c) {
+        case 't':
+            o.technique = optarg;
+            break;
+        case 's':
+            o.settings.push_back(optarg);
+            break;
+        case 'r':
+            o.repeat = static_cast<int>(std::strtol(optarg, &end, 10));
+            if (*optarg == '\0' || *end != '\0' || o.repeat < 0 || o.repeat > 10000)
+                usage_error("--repeat expects a whole number from 0 to 10000");
+            break;
+        case 'o':
+            o.out = optarg;
+            break;
+        case 'j':
+            o.json = optarg;
+            break;
+        case 'd':
+            o.device = optarg;
+            break;
+        case 'h':
+            print_help();
+            std::exit(0);
+        default:
+            std::exit(2);
+        }
+    }
+    if (argc - optind != 1)
+        usage_error("expected one case folder");
+    o.case_dir = argv[optind];
+    return o;
+}
+
+void write_images(const Options &o, const Case &data, const FloatImage &result)
+{
+    std::error_code error;
+    std::filesystem::create_directories(o.out, error);
+    if (error)
+        fail("%s: cannot be created: %s", o.out.c_str(), error.message().c_str());
+    write_exr(o.out + "/visibility.exr", result);
+    write_png(o.out + "/visibility.png", grey_image(result));
+    if (data.truth)
+        write_png(o.out + "/error.png", heat_map(result, *data.truth, data.mask ? &*data.mask : nullptr));
+}
+
+void run(const Options &o, gpu &g)
+{
+    const Technique technique = parse_technique(o.technique, o.settings);
+    const Case data = load_case(o.case_dir);
+    DeviceCase device_case(g, data);
+    Row row = make_row(g, data, technique);
+    const auto counting = make_estimator(g, device_case, technique, true);
+    counting->run();
+    const FloatImage result = counting->visibility();
+    softsh_stats stats{};
+    if (counting->stats(stats))
+        row.stats = stats;
+    if (!technique.is_peer)
+        row.memory = counting->memory();
+    if (data.truth)
+        row.error = measure_error(result, *data.truth, data.mask ? &*data.mask : nullptr);
+    if (o.repeat > 0) {
+        const auto timed = make_estimator(g, device_case, technique, false);
+        timed->run(); // code is generated at the first dispatch
+        std::vector<RunTimes> runs;
+        for (int i = 0; i < o.repeat; i++)
+            runs.push_back(timed->run());
+        add_times(row, runs);
+    }
+    std::printf("%s\n", to_line(row).c_str());
+    if (!o.out.empty())
+        write_images(o, data, result);
+    if (!o.json.empty()) {
+        std::ofstream file(o.json);
+        file << to_json(row);
+        file.close();
+        if (!file)
+            fail("%s: cannot be written", o.json.c_str());
+    }
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+    const Options options = parse(argc, argv);
+    gpu g{};
+    try {
+        gpu_info info{};
+        info.device = options.device.empty() ? nullptr : options.device.c_str();
+        parse_technique(options.technique, options.settings); // before anything takes time
+        if (!gpu_create(&info, &g))
+            fail("%s", g.error);
+        run(options, g);
+    } catch (const std::exception &error) {
+        std::fprintf(stderr, "softshadow-eval: %s\n", error.what());
+        gpu_destroy(&g);
+        return 1;
+    }
+    gpu_destroy(&g);
+    return 0;
+}

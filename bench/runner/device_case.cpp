@@ -1,0 +1,48 @@
+// A case's depth buffers as images on the device.
+#include "device_case.hpp"
+
+#include "error.hpp"
+
+namespace
+{
+
+gpu_image upload(gpu &g, const FloatImage &depth)
+{
+    gpu_image image{};
+    gpu_image_info info{};
+    info.format = VK_FORMAT_D32_SFLOAT;
+    info.width = depth.width;
+    info.height = depth.height;
+    info.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+    if (!gpu_image_create(&g, &info, &image))
+        fail("%s", g.error);
+    if (!gpu_image_upload(&g, &image, depth.texels.data(), depth.texels.size() * sizeof(float),
+                          VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL)) {
+        gpu_image_destroy(&g, &image);
+        fail("%s", g.error);
+    }
+    return image;
+}
+
+} // namespace
+
+DeviceCase::DeviceCase(gpu &g, const Case &case_data) : data(case_data), gpu_(g)
+{
+    camera = upload(g, data.camera.depth);
+    try {
+        for (const CaseMap &map : data.maps)
+            maps.push_back(upload(g, map.depth));
+    } catch (...) {
+        gpu_image_destroy(&gpu_, &camera);
+        for (gpu_image &image : maps)
+            gpu_image_destroy(&gpu_, &image);
+        throw;
+    }
+}
+
+DeviceCase::~DeviceCase()
+{
+    gpu_image_destroy(&gpu_, &camera);
+    for (gpu_image &image : maps)
+        gpu_image_destroy(&gpu_, &image);
+}

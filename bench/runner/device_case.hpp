@@ -1,0 +1,24 @@
+// A case's depth buffers as images on the device.
+#pragma once
+
+#include <vector>
+
+#include "case_io.hpp"
+#include "gpu.h"
+
+class DeviceCase
+{
+  public:
+    // Depth goes to D32 images, in SHADER_READ_ONLY_OPTIMAL. `data` must outlive this. Throws Error.
+    DeviceCase(gpu &g, const Case &data);
+    ~DeviceCase();
+    DeviceCase(const DeviceCase &) = delete;
+    DeviceCase &operator=(const DeviceCase &) = delete;
+
+    const Case &data;
+    gpu_image camera{};
+    std::vector<gpu_image> maps; // as data.maps
+
+  private:
+    gpu &gpu_;
+};

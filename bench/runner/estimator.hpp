@@ -1,0 +1,60 @@
+// One technique set up for one case: runs it, times its passes, reads its picture and its counts.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "device_case.hpp"
+#include "technique.hpp"
+
+struct PassTime {
+    std::string name;
+    double ms;
+};
+
+// Times of one run; build and visibility are separate recordings.
+struct RunTimes {
+    std::vector<PassTime> build, visibility;
+};
+
+struct MemoryUse {
+    VkDeviceSize persistent = 0, transient = 0; // bytes
+};
+
+class Estimator
+{
+  public:
+    virtual ~Estimator() = default;
+    // Records, submits and waits once; `build` false leaves the occluders as they are, as for an unchanged map.
+    virtual RunTimes run(bool build = true) = 0;
+    // The visibility of the last run.
+    virtual FloatImage visibility() = 0;
+    // Of the last run; false if there are none (peers, or created without).
+    virtual bool stats(softsh_stats &) = 0;
+    virtual MemoryUse memory() const = 0;
+};
+
+// With `stats` the library counts, which costs a little: time without. Throws Error, with the library's own sentence
+// where it has one.
+std::unique_ptr<Estimator> make_estimator(gpu &g, DeviceCase &device_case, const Technique &technique, bool stats);
+
+// A context for everything the process does with the library on this device; errors go to `last_message`.
+class LibraryContext
+{
+  public:
+    explicit LibraryContext(gpu &g);
+    ~LibraryContext();
+    LibraryContext(const LibraryContext &) = delete;
+    LibraryContext &operator=(const LibraryContext &) = delete;
+    // Throws Error with the last message unless `result` is success.
+    void check(softsh_result result) const;
+
+    softsh_context *context = nullptr;
+    std::string last_message;
+};
+
+// The public structures for a case's light and matrices.
+softsh_light to_library(const Light &light);
+void to_library(const Frustum &frustum, double view[16], double projection[16]);

@@ -1,0 +1,32 @@
+// What --technique and --set say: one technique, of the library or a peer, with its settings.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <softshadow/softshadow.h>
+
+#include "peers.h"
+
+struct Technique {
+    std::string name;                            // as given
+    std::map<std::string, std::string> settings; // as given, for reports
+    bool is_peer = false;
+    peer_kind peer = PEER_KIND_COUNT;
+    peer_settings peer_options{};
+    bool automatic = false;           // the library without settings
+    softsh_settings library{};        // unless automatic
+    softsh_accel accel = SOFTSH_ACCEL_AUTO;
+    std::optional<uint32_t> layers; // use only the first N layer maps
+};
+
+// `assignments` are "key=value". Throws Error that lists what is valid.
+Technique parse_technique(const std::string &name, const std::vector<std::string> &assignments);
+
+// "bitmask primitive=microquad budget=16" and the like.
+std::string describe(const Technique &technique);
+
+// For --help: techniques and settings, one per line.
+std::string technique_help();
