@@ -3,12 +3,13 @@
 # Installs what is missing, builds, renders the scene `balls` and MODEL (or the scene `contact`), writes pictures and error
 # maps to out/demo, and prints what each technique's shadows cost and how far they are from ray-traced ones.
 #
-# SIZE (640x480), MAP (1024), RAYS (256 per pixel of the ray-traced truth) and REPEAT (9 timed runs) may be set in the environment.
+# SIZE (640x480), MAP (1024), RAYS (256 per pixel of the ray-traced truth) and REPEAT (3 timed runs) may be set in the
+# environment.
 set -eu
 
 case ${1:-} in
 -h | --help)
-    sed -n '2,6s/^# \{0,1\}//p' "$0"
+    sed -n '2,7s/^# \{0,1\}//p' "$0"
     exit 0
     ;;
 esac
@@ -70,7 +71,7 @@ evaluate()
     label=$2
     shift 2
     json=$folder/$label.json
-    "$eval_case" "$folder" "$@" --repeat "${REPEAT:-9}" --out "$folder/$label" --json "$json" >/dev/null
+    "$eval_case" "$folder" "$@" --repeat "${REPEAT:-3}" --out "$folder/$label" --json "$json" >/dev/null
     printf '%-34s %10s %10s %12s\n' "$label" "$(round "$(number "$json" mae)" 4)" "$(round "$(number "$json" p99)" 3)" \
         "$(round "$(number "$json" total)" 2)"
 }
