@@ -9,6 +9,9 @@
 /* How far from parallel or from diagonal counts as rounding. */
 static const double tolerance = 1e-6;
 
+/* Width of a line light over its length. */
+static const double line_width = 1e-3;
+
 static double length3(const double a[3])
 {
     return sqrt(reference_dot(a, a));
@@ -93,11 +96,10 @@ static void negate_column(reference_map *map, int column, double axis[3])
         axis[i] = -axis[i];
 }
 
-/* Section 2: as near to a positive diagonal as it can be. The product test picks the smaller rotation whatever the
- * light's and the texels' aspect. */
+/* Section 2: as near to a positive diagonal as it can be. */
 static void normalize_axes(reference_map *map)
 {
-    if (fabs(map->a[0][1] * map->a[1][0]) > fabs(map->a[0][0] * map->a[1][1])) {
+    if (fabs(map->a[0][0]) + fabs(map->a[1][1]) < fabs(map->a[0][1]) + fabs(map->a[1][0])) {
         for (int i = 0; i < 2; ++i) {
             const double swapped = map->a[i][0];
             map->a[i][0] = map->a[i][1];
@@ -128,6 +130,18 @@ static bool invert_a(reference_map *map)
     return true;
 }
 
+/* A line light: the axis it lacks, a thousandth of the other one, in the image plane. */
+static void widen_line(const reference_map *map, double axis_s[3], double axis_t[3])
+{
+    double *const missing = length3(axis_s) > 0.0 ? axis_t : axis_s;
+    const double *const other = missing == axis_s ? axis_t : axis_s;
+    if (length3(missing) > 0.0)
+        return;
+    reference_cross(map->axis, other, missing);
+    for (int i = 0; i < 3; ++i)
+        missing[i] *= line_width;
+}
+
 static bool derive_rectangle(reference_map *map, const softsh_light *light)
 {
     const double size[2] = {map->width, map->height};
@@ -137,6 +151,8 @@ static bool derive_rectangle(reference_map *map, const softsh_light *light)
     memcpy(map->axis_s, light->half_u, sizeof(map->axis_s));
     memcpy(map->axis_t, light->half_v, sizeof(map->axis_t));
     map->point = !(length3(map->axis_s) > 0.0) && !(length3(map->axis_t) > 0.0);
+    if (!map->point)
+        widen_line(map, map->axis_s, map->axis_t);
     map->epsilon = 1.0;
     map->delta = dot4(map->rows[3], map->center, 1.0) / map->axis_length;
     const double extent = fmax(length3(map->axis_s), length3(map->axis_t));

@@ -31,8 +31,8 @@ typedef struct reference_map {
 } reference_map;
 
 /* False where section 2 has no formula: an oblique or singular frustum, a light whose plane is not parallel to the
- * image plane or lies behind the projection centre, a line-shaped light, or shape and projection that do not go
- * together. Matrices are column-major. */
+ * image plane or lies behind the projection centre, or shape and projection that do not go together. Matrices are
+ * column-major. */
 bool reference_map_derive(reference_map *map, const double view[16], const double projection[16], uint32_t width,
                           uint32_t height, const softsh_light *light);
 

@@ -10,7 +10,7 @@
 static const double steepest = 114.0;
 
 /* Sine of the angle in (u, v) below which two differences are one. */
-static const double parallel = 1e-6;
+static const double parallel = 1e-3;
 
 bool reference_camera_derive(reference_camera *camera, const double view[16], const double projection[16],
                              uint32_t width, uint32_t height)
@@ -21,12 +21,25 @@ bool reference_camera_derive(reference_camera *camera, const double view[16], co
     if (!reference_matrix_inverse(view, camera->view_inverse) ||
         !reference_matrix_inverse(projection, camera->projection_inverse))
         return false;
-    /* Before the division by its own w, an unprojected point's w is one over its distance. */
-    double start[4], end[4];
-    reference_matrix_apply(camera->projection_inverse, (const double[4]){0.0, 0.0, 0.0, 1.0}, start);
-    reference_matrix_apply(camera->projection_inverse, (const double[4]){0.0, 0.0, 1.0, 1.0}, end);
     const bool perspective = fabs(projection[3]) + fabs(projection[7]) + fabs(projection[11]) > 0.0;
-    const bool reversed = perspective ? end[3] > start[3] : end[2] / end[3] > start[2] / start[3];
+    bool reversed;
+    if (perspective) {
+        /* Before the division by its own w, an unprojected point's w is one over its distance. */
+        double start[4], end[4];
+        reference_matrix_apply(camera->projection_inverse, (const double[4]){0.0, 0.0, 0.0, 1.0}, start);
+        reference_matrix_apply(camera->projection_inverse, (const double[4]){0.0, 0.0, 1.0, 1.0}, end);
+        reversed = end[3] > start[3];
+    } else {
+        /* Where clip x, y and depth lead in the world: forward is right x down. */
+        double steps[3][4], forward[3];
+        for (int i = 0; i < 3; ++i) {
+            const double clip[4] = {i == 0, i == 1, i == 2, 0.0};
+            reference_matrix_apply(camera->projection_inverse, clip, steps[i]);
+            reference_matrix_apply(camera->view_inverse, steps[i], steps[i]);
+        }
+        reference_cross(steps[0], steps[1], forward);
+        reversed = reference_dot(steps[2], forward) < 0.0;
+    }
     camera->far_depth = reversed ? 0.0 : 1.0;
     return true;
 }
@@ -108,38 +121,54 @@ static bool locate(const reference_map *map, const reference_camera *camera, con
     return reference_camera_unproject(camera, x, y, depth, world, derivative) && reference_map_project(map, world, uvg);
 }
 
-/* The difference to the neighbour along (dx, dy) or (-dx, -dy) whose g differs less; the first of two equals. */
-static bool difference(const reference_map *map, const reference_camera *camera, const reference_camera_image *image,
-                       int64_t x, int64_t y, int dx, int dy, const double center[3], double out[3])
+/* A pixel's four neighbours: left, right, above, below. */
+typedef struct neighbourhood {
+    bool counts[4];
+    double offset[4][3]; /* (u, v, g) from the centre */
+} neighbourhood;
+
+static void look_around(const reference_map *map, const reference_camera *camera, const reference_camera_image *image,
+                        int64_t x, int64_t y, const double center[3], neighbourhood *out)
 {
-    bool found = false;
-    for (int side = -1; side <= 1; side += 2) {
-        double neighbour[3];
-        if (!locate(map, camera, image, x + side * dx, y + side * dy, neighbour))
-            continue;
-        const double here = fabs(neighbour[2] - center[2]);
-        if (found && !(here < fabs(out[2])))
-            continue;
-        for (int i = 0; i < 3; ++i)
-            out[i] = neighbour[i] - center[i];
-        found = true;
+    static const int steps[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
+    for (int k = 0; k < 4; ++k) {
+        double uvg[3];
+        out->counts[k] = locate(map, camera, image, x + steps[k][0], y + steps[k][1], uvg);
+        for (int i = 0; out->counts[k] && i < 3; ++i)
+            out->offset[k][i] = uvg[i] - center[i];
     }
-    return found;
 }
 
-static void gradient_from_depth(const reference_map *map, const reference_camera *camera,
-                                const reference_camera_image *image, uint32_t x, uint32_t y, const double uvg[3],
-                                double gradient[2])
+/* Of neighbours `first` and first + 1 the one whose g differs less, the first of two equals; NULL without any. */
+static const double *difference(const neighbourhood *around, int first)
 {
-    double a[3], b[3];
+    const double *const before = around->offset[first], *const after = around->offset[first + 1];
+    if (!around->counts[first] || !around->counts[first + 1])
+        return around->counts[first] ? before : around->counts[first + 1] ? after : NULL;
+    return fabs(after[2]) < fabs(before[2]) ? after : before;
+}
+
+static void gradient_from_depth(const neighbourhood *around, double gradient[2])
+{
+    const double *const a = difference(around, 0), *const b = difference(around, 2);
     gradient[0] = gradient[1] = 0.0;
-    if (!difference(map, camera, image, x, y, 1, 0, uvg, a) || !difference(map, camera, image, x, y, 0, 1, uvg, b))
+    if (!a || !b)
         return;
     const double determinant = a[0] * b[1] - a[1] * b[0];
     if (!(fabs(determinant) > parallel * hypot(a[0], a[1]) * hypot(b[0], b[1])))
         return;
     gradient[0] = (a[2] * b[1] - b[2] * a[1]) / determinant;
     gradient[1] = (a[0] * b[2] - b[0] * a[2]) / determinant;
+}
+
+bool reference_plane_trusted(const double offset[4][3], const double gradient[2], double flat_eta)
+{
+    for (int k = 0; k < 4; ++k) {
+        const double du = gradient[0] * offset[k][0], dv = gradient[1] * offset[k][1];
+        if (!(fabs(offset[k][2] - du - dv) <= 4.0 * flat_eta + 0.03 * (fabs(du) + fabs(dv))))
+            return false;
+    }
+    return true;
 }
 
 void reference_receiver_derive(reference_receiver *out, const reference_map *map, const reference_camera *camera,
@@ -169,14 +198,22 @@ void reference_receiver_derive(reference_receiver *out, const reference_map *map
         return;
     }
     out->state = REFERENCE_RECEIVER_ACTIVE;
-    if (has_normal)
-        reference_plane_gradient(map, uvg, normal, out->gradient);
-    else
-        gradient_from_depth(map, camera, image, x, y, uvg, out->gradient);
-    reference_gradient_clamp(map, uvg[2], out->gradient);
     /* An error of the camera's depth moves the point in (u, v) as well; on its own plane that is no error. */
     double moved[3];
     derive_along(map, world, derivative, moved);
+    if (has_normal) {
+        reference_plane_gradient(map, uvg, normal, out->gradient);
+        out->trusted = true;
+    } else {
+        neighbourhood around;
+        const double flat[2] = {0.0, 0.0};
+        look_around(map, camera, image, x, y, uvg, &around);
+        gradient_from_depth(&around, out->gradient);
+        out->trusted = around.counts[0] && around.counts[1] && around.counts[2] && around.counts[3] &&
+                       reference_plane_trusted((const double(*)[3])around.offset, out->gradient,
+                                               reference_eta(map, bias, uvg[2], moved[2], flat));
+    }
+    reference_gradient_clamp(map, uvg[2], out->gradient);
     const double away = moved[2] - out->gradient[0] * moved[0] - out->gradient[1] * moved[1];
     out->eta = reference_eta(map, bias, uvg[2], away, out->gradient);
     out->override_bias = bias->override_bias;

@@ -36,12 +36,13 @@ typedef struct reference_receiver {
     reference_receiver_state state;
     double uvg[3];      /* set unless the state is NONE */
     double gradient[2]; /* dg/du, dg/dv of its plane; set when active, as the rest */
+    bool trusted;       /* the plane may be relied on: what lies below it cannot occlude */
     double eta;
     bool override_bias;
     double bias;
 } reference_receiver;
 
-/* False for a singular matrix. An orthographic camera looks along -z of its view space. */
+/* False for a singular matrix. Right, down and forward of an orthographic camera form a right-handed frame. */
 bool reference_camera_derive(reference_camera *camera, const double view[16], const double projection[16],
                              uint32_t width, uint32_t height);
 /* World point of a device depth at the centre of pixel (x, y), and its derivative by the depth. False at the far plane,
@@ -56,6 +57,9 @@ void reference_receiver_derive(reference_receiver *out, const reference_map *map
 /* (dg/du, dg/dv) of the plane through `uvg` with a world-space normal, not clamped. */
 void reference_plane_gradient(const reference_map *map, const double uvg[3], const double normal[3],
                               double gradient[2]);
+/* Whether all four neighbours, given by their (u, v, g) from the receiver, lie on the plane; `flat_eta` is the bias of
+ * a plane without slope. */
+bool reference_plane_trusted(const double offset[4][3], const double gradient[2], double flat_eta);
 /* Clamps a gradient to a slope of 89.5 degrees; a NaN becomes 0. */
 void reference_gradient_clamp(const reference_map *map, double g, double gradient[2]);
 /* The automatic bias. `away_per_depth` is how fast, in units of g, the point leaves the receiver's plane when the

@@ -7,6 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Half width of the band around the receiver's plane that is its own surface, in slopes per spacing. */
+static const double micropatch_band = 0.5, microquad_band = 0.05;
+
 /* One sample of the chosen level. */
 typedef struct micro_sample {
     double place[3]; /* u, v, g */
@@ -94,18 +97,23 @@ static double plane_at(const reference_receiver *receiver, const double uv[2])
            receiver->gradient[1] * (uv[1] - receiver->uvg[1]);
 }
 
+/* How far a block's nearest texel lifts the receiver's plane. */
+static double lift(const reference_settings *settings, const reference_receiver *receiver)
+{
+    const double spacing = (double)(1u << settings->level);
+    return !is_micropatch(settings) && is_nearest(settings) ? slope(receiver) * 0.5 * (spacing - 1.0) : 0.0;
+}
+
 double reference_raised_g(const reference_map *map, const reference_settings *settings,
                           const reference_receiver *receiver)
 {
-    const double g = receiver->uvg[2], spacing = (double)(1u << settings->level);
+    const double g = receiver->uvg[2];
     if (receiver->override_bias) {
         if (!map->perspective)
             return g + receiver->bias;
         return receiver->bias * g < 1.0 ? g / (1.0 - receiver->bias * g) : INFINITY;
     }
-    if (!is_micropatch(settings) && is_nearest(settings))
-        return g + receiver->eta + slope(receiver) * 0.5 * (spacing - 1.0);
-    return g + receiver->eta;
+    return g + receiver->eta + lift(settings, receiver);
 }
 
 static bool in_front_of_light(const reference_map *map, double g)
@@ -138,9 +146,12 @@ static bool passes(const evaluation *e, const double place[3])
 {
     if (!(place[2] > e->raised[2]) || !in_front_of_light(e->map, place[2]))
         return false;
-    if (!is_micropatch(e->settings) || e->receiver->override_bias)
+    if (e->receiver->override_bias)
         return true;
-    return !(fabs(place[2] - plane_at(e->receiver, place)) <= e->receiver->eta + slope(e->receiver) * 0.5 * e->spacing);
+    const double height = place[2] - plane_at(e->receiver, place) - lift(e->settings, e->receiver);
+    const double band = is_micropatch(e->settings) ? micropatch_band : microquad_band;
+    const double margin = e->receiver->eta + band * slope(e->receiver) * e->spacing;
+    return e->receiver->trusted ? height > margin : fabs(height) > margin;
 }
 
 static void prepare_samples(evaluation *e, const float *g)

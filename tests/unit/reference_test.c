@@ -551,6 +551,10 @@ static void bias_leaves_out_what_it_should(void **unused)
     receiver.uvg[0] = 3.0; /* plane 0.8 */
     g[4 * side + 4] = 0.5f;
     assert_true(evaluate(&map, g, &settings, &receiver).area > 0.0);
+    /* Unless its plane is trusted: then it is below the horizon. */
+    receiver.trusted = true;
+    assert_true(evaluate(&map, g, &settings, &receiver).area == 0.0);
+    receiver.trusted = false;
     receiver.uvg[0] = 4.0; /* plane 0.4, and 0.5 is within it */
     assert_true(evaluate(&map, g, &settings, &receiver).area == 0.0);
     /* With an override only the depth counts. */
@@ -573,6 +577,46 @@ static void bias_leaves_out_what_it_should(void **unused)
     receiver.bias = 5.0;
     assert_true(isinf(reference_raised_g(&map, &settings, &receiver)));
     assert_int_equal(evaluate(&map, g, &settings, &receiver).occluded, 0);
+}
+
+/* Microquads: a twentieth of the slope per spacing, around a plane that nearest depths lift. */
+static void microquads_keep_to_their_band(void **unused)
+{
+    (void)unused;
+    const reference_map map = table_map(16.0, 0.0, side);
+    float g[side * side];
+    reference_settings settings = {.primitive = SOFTSH_PRIMITIVE_MICROQUAD};
+    reference_receiver receiver = at(4.0, 4.0, 0.25);
+    receiver.gradient[0] = 0.02;
+    receiver.gradient[1] = -0.01; /* s is 0.03 */
+    receiver.eta = 1e-4;
+    for (int level = 0; level < 2; ++level) {
+        const double band = 1e-4 + 0.05 * 0.03 * (level ? 2.0 : 1.0);
+        for (int nearest = 0; nearest < 2; ++nearest) {
+            const double lift = nearest && level ? 0.03 * 0.5 : 0.0;
+            settings.level = (uint32_t)level;
+            settings.aggregation = nearest ? SOFTSH_AGGREGATION_NEAREST : SOFTSH_AGGREGATION_SAMPLED;
+            for (int above = -1; above <= 1; ++above) {
+                for (int trusted = 0; trusted < 2; ++trusted) {
+                    receiver.trusted = trusted != 0;
+                    for (int outside = 0; outside < 2; ++outside) {
+                        /* Every sample at the same height over the plane at its place. */
+                        const double height = above * (band + (outside ? 1e-6 : -1e-6)) + lift;
+                        for (int y = 0; y < side; ++y) {
+                            for (int x = 0; x < side; ++x) {
+                                const double block = level ? (nearest ? 0.0 : 0.5) : -0.5;
+                                const double u = level ? x / 2 * 2 + 1 + block : x + 0.5;
+                                const double v = level ? y / 2 * 2 + 1 + block : y + 0.5;
+                                g[y * side + x] = (float)(0.25 + height + 0.02 * (u - 4.0) - 0.01 * (v - 4.0));
+                            }
+                        }
+                        const bool hidden = above && outside && (above > 0 || !trusted);
+                        assert_int_equal(evaluate(&map, g, &settings, &receiver).area > 0.0, hidden);
+                    }
+                }
+            }
+        }
+    }
 }
 
 static void states_decide_without_a_look(void **unused)
@@ -725,6 +769,7 @@ int main(void)
         cmocka_unit_test(directional_light_is_a_disc),
         cmocka_unit_test(lights_without_size_cast_hard_shadows),
         cmocka_unit_test(bias_leaves_out_what_it_should),
+        cmocka_unit_test(microquads_keep_to_their_band),
         cmocka_unit_test(states_decide_without_a_look),
         cmocka_unit_test(hierarchies_on_odd_sizes),
         cmocka_unit_test(filter_by_hand),
