@@ -12,7 +12,7 @@ namespace
 {
 
 struct Options {
-    std::string case_dir, technique = "auto", out, json, device;
+    std::string case_dir, technique = "auto", against, out, json, device;
     std::vector<std::string> settings;
     int repeat = 5;
 };
@@ -20,10 +20,12 @@ struct Options {
 void print_help()
 {
     std::printf("softshadow-eval CASE_DIR [--technique T] [--set K=V ...] [--repeat N] [--out DIR] [--json FILE]\n"
-                "                [--device N|NAME]\n\n"
+                "                [--against T] [--device N|NAME]\n\n"
                 "Runs one technique (default: auto) on a case: a folder with case.json and depth buffers as EXR files.\n"
                 "Prints error against the case's truth and the median time of N runs (default 5; 0: one, not timed).\n"
-                "--out writes visibility.exr, visibility.png and, with a truth, error.png (0 to 0.5); --json the row.\n\n%s",
+                "--out writes visibility.exr, visibility.png and, with a truth, error.png (0 to 0.5); --json the row.\n"
+                "--against times a second technique (without settings) in turn with the first and prints the ratio of the times\n"
+                "that do not include the build.\n\n%s",
                 technique_help().c_str());
 }
 
@@ -40,6 +42,7 @@ Options parse(int argc, char **argv)
                                           {"repeat", required_argument, nullptr, 'r'},
                                           {"out", required_argument, nullptr, 'o'},
                                           {"json", required_argument, nullptr, 'j'},
+                                          {"against", required_argument, nullptr, 'a'},
                                           {"device", required_argument, nullptr, 'd'},
                                           {"help", no_argument, nullptr, 'h'},
                                           {nullptr, 0, nullptr, 0}};
@@ -63,6 +66,9 @@ Options parse(int argc, char **argv)
             break;
         case 'j':
             o.json = optarg;
+            break;
+        case 'a':
+            o.against = optarg;
             break;
         case 'd':
             o.device = optarg;
@@ -92,6 +98,14 @@ void write_images(const Options &o, const Case &data, const FloatImage &result)
         write_png(o.out + "/error.png", heat_map(result, *data.truth, data.mask ? &*data.mask : nullptr));
 }
 
+void print_ratio(const Row &row, Row other, const std::vector<RunTimes> &runs)
+{
+    add_times(other, runs);
+    std::printf("%s %.3f ms / %s %.3f ms = %.2f (medians of %zu, in turn, without the build)\n",
+                describe(row.technique).c_str(), row.visibility_ms, describe(other.technique).c_str(), other.visibility_ms,
+                row.visibility_ms / other.visibility_ms, runs.size());
+}
+
 void run(const Options &o, gpu &g)
 {
     const Technique technique = parse_technique(o.technique, o.settings);
@@ -110,11 +124,19 @@ void run(const Options &o, gpu &g)
         row.error = measure_error(result, *data.truth, data.mask ? &*data.mask : nullptr);
     if (o.repeat > 0) {
         const auto timed = make_estimator(g, device_case, technique, false);
+        const auto other = o.against.empty() ? nullptr : make_estimator(g, device_case, parse_technique(o.against, {}), false);
         timed->run(); // code is generated at the first dispatch
-        std::vector<RunTimes> runs;
-        for (int i = 0; i < o.repeat; i++)
+        if (other)
+            other->run();
+        std::vector<RunTimes> runs, other_runs;
+        for (int i = 0; i < o.repeat; i++) {
             runs.push_back(timed->run());
+            if (other)
+                other_runs.push_back(other->run());
+        }
         add_times(row, runs);
+        if (other)
+            print_ratio(row, make_row(g, data, parse_technique(o.against, {})), other_runs);
     }
     std::printf("%s\n", to_line(row).c_str());
     if (!o.out.empty())
@@ -138,6 +160,8 @@ int main(int argc, char **argv)
         gpu_info info{};
         info.device = options.device.empty() ? nullptr : options.device.c_str();
         parse_technique(options.technique, options.settings); // before anything takes time
+        if (!options.against.empty())
+            parse_technique(options.against, {});
         if (!gpu_create(&info, &g))
             fail("%s", g.error);
         run(options, g);

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-/* The largest minStorageBufferOffsetAlignment Vulkan allows. */
+/* The largest minStorageBufferOffsetAlignment and minUniformBufferOffsetAlignment Vulkan allows. */
 enum { ALIGNMENT = 256 };
 
 static softshi_range append(VkDeviceSize *end, VkDeviceSize size)

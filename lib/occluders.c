@@ -36,7 +36,7 @@ static softsh_result create_resources(softsh_occluders *o)
     const VkBufferCreateInfo buffer_info = {
         .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
         .size = o->layout.buffer_size,
-        .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
+        .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
                  VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
         .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
     };
@@ -89,14 +89,15 @@ static softsh_result create_sets(softsh_occluders *o, uint32_t recordings)
         return softshi_fail(context, SOFTSH_ERROR_OUT_OF_HOST_MEMORY, "no host memory for %u descriptor sets", o->io_set_count);
     const uint32_t n = o->io_set_count;
     const VkDescriptorPoolSize sizes[] = {
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 3 + 4 * n},
+        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1 + n},
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 3 + 3 * n},
         {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1 + 2 * n},
         {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 1 + n},
     };
     const VkDescriptorPoolCreateInfo pool_info = {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
         .maxSets = 1 + n,
-        .poolSizeCount = 3,
+        .poolSizeCount = 4,
         .pPoolSizes = sizes,
     };
     VkResult result = context->vk.CreateDescriptorPool(context->device, &pool_info, context->allocator, &o->pool);
@@ -131,30 +132,34 @@ static softsh_result finish(softsh_occluders *o)
         o->wide_view = VK_NULL_HANDLE;
         return softshi_fail_vulkan(context, result, "vkCreateImageView");
     }
-    const softshi_range ranges[] = {o->layout.header, o->layout.fan_depth, o->layout.pyramid};
-    VkDescriptorBufferInfo buffers[3];
+    const softshi_range plan = {o->layout.header.offset + sizeof(ss_occluders), sizeof(ss_plan)};
+    const struct {
+        uint32_t binding;
+        VkDescriptorType type;
+        softshi_range range; /* of buffers */
+    } list[SS_OCCLUDER_BINDINGS] = {
+        {SS_BIND_OCCLUDERS, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, o->layout.header},
+        {SS_BIND_FAN_DEPTH, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, o->layout.fan_depth},
+        {SS_BIND_PYRAMID, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, o->layout.pyramid},
+        {SS_BIND_WIDE, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, {0, 0}},
+        {SS_BIND_WIDE_OUT, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, {0, 0}},
+        {SS_BIND_PLAN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, plan},
+    };
+    const VkDescriptorImageInfo image = {VK_NULL_HANDLE, o->wide_view, VK_IMAGE_LAYOUT_GENERAL};
+    VkDescriptorBufferInfo buffers[SS_OCCLUDER_BINDINGS];
     VkWriteDescriptorSet writes[SS_OCCLUDER_BINDINGS];
-    for (uint32_t i = 0; i < 3; i++) {
-        buffers[i] = (VkDescriptorBufferInfo){o->block.buffer, ranges[i].offset, ranges[i].size};
+    for (uint32_t i = 0; i < SS_OCCLUDER_BINDINGS; i++) {
+        buffers[i] = (VkDescriptorBufferInfo){o->block.buffer, list[i].range.offset, list[i].range.size};
         writes[i] = (VkWriteDescriptorSet){
             .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
             .dstSet = o->set,
-            .dstBinding = i, /* SS_BIND_OCCLUDERS, _FAN_DEPTH, _PYRAMID */
+            .dstBinding = list[i].binding,
             .descriptorCount = 1,
-            .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+            .descriptorType = list[i].type,
+            .pImageInfo = &image,
             .pBufferInfo = &buffers[i],
         };
     }
-    const VkDescriptorImageInfo image = {VK_NULL_HANDLE, o->wide_view, VK_IMAGE_LAYOUT_GENERAL};
-    for (uint32_t i = 0; i < 2; i++)
-        writes[3 + i] = (VkWriteDescriptorSet){
-            .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-            .dstSet = o->set,
-            .dstBinding = i == 0 ? SS_BIND_WIDE : SS_BIND_WIDE_OUT,
-            .descriptorCount = 1,
-            .descriptorType = i == 0 ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
-            .pImageInfo = &image,
-        };
     context->vk.UpdateDescriptorSets(context->device, SS_OCCLUDER_BINDINGS, writes, 0, NULL);
     return SOFTSH_SUCCESS;
 }

@@ -21,7 +21,7 @@ static softsh_result create_buffer(softsh_view *v)
     const VkBufferCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
         .size = v->layout.buffer_size,
-        .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
+        .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
                  VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
         .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
     };
@@ -41,14 +41,15 @@ static softsh_result create_sets(softsh_view *v, uint32_t recordings)
     if (!v->io_sets)
         return softshi_fail(context, SOFTSH_ERROR_OUT_OF_HOST_MEMORY, "no host memory for %u descriptor sets", recordings);
     const VkDescriptorPoolSize sizes[] = {
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 4 * recordings},
+        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, recordings},
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 3 * recordings},
         {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 2 * recordings},
         {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, recordings},
     };
     const VkDescriptorPoolCreateInfo pool_info = {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
         .maxSets = recordings,
-        .poolSizeCount = 3,
+        .poolSizeCount = 4,
         .pPoolSizes = sizes,
     };
     VkResult result = context->vk.CreateDescriptorPool(context->device, &pool_info, context->allocator, &v->pool);

@@ -91,7 +91,8 @@ static void write_descriptors(const softsh_view *v, VkDescriptorSet set, const s
         } else {
             const softshi_range *range = &ranges[i - SS_BIND_FRAME];
             buffers[i - SS_BIND_FRAME] = (VkDescriptorBufferInfo){v->block.buffer, range->offset, range->size};
-            writes[i].descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+            writes[i].descriptorType =
+                i == SS_BIND_FRAME ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
             writes[i].pBufferInfo = &buffers[i - SS_BIND_FRAME];
         }
     }

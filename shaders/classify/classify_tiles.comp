@@ -145,22 +145,25 @@ void main()
                        abs(d00) <= 1.0 ? d00 : 0.0);
     vec2 residual = vec2(3e38, -3e38);
     uvec2 receivers = uvec2(0u);
+    const bool reversed = frame.quality.w != 0u;
     for (int y = 0; y <= last.y; y++) {
         for (int x = 0; x <= last.x; x++) {
-            const float depth = texelFetch(camera_depth, frame.area.xy + corner + ivec2(x, y), 0).x;
-            const bool is_receiver = ss_is_receiver(depth);
-            const float r = clamp(depth, 0.0, 1.0) - (depth_plane.z + dot(depth_plane.xy, vec2(x, y)));
+            const ivec2 at = ivec2(x, y);
+            const float depth = texelFetch(camera_depth, frame.area.xy + corner + at, 0).x;
+            // Lit until a later pass says otherwise: most tiles are never seen again.
+            ss_write_visibility(corner + at, 1.0);
+            const bool is_receiver = reversed ? depth > 0.0 : depth < 1.0;
+            const float r = clamp(depth, 0.0, 1.0) - (depth_plane.z + dot(depth_plane.xy, vec2(at)));
             residual = is_receiver ? vec2(min(residual.x, r), max(residual.y, r)) : residual;
-            receivers[y >> 2] |= is_receiver ? 1u << ((y & 3) * SS_TILE + x) : 0u;
         }
     }
 
     uint nodes = 0u;
     uint state = SS_STATE_LIT;
-    if (receivers != uvec2(0u))
+    if (residual.x <= residual.y)
         state = classify(bound(corner, last, depth_plane, residual), nodes);
     // Normals can make single pixels face away, which only classify_pixels looks at.
-    if (SS_NORMALS && state == SS_STATE_LIT && receivers != uvec2(0u))
+    if (SS_NORMALS && state == SS_STATE_LIT && residual.x <= residual.y)
         state = SS_STATE_PIXELS;
     tiles[tile] = state;
     if (state == SS_STATE_PIXELS) {
@@ -168,7 +171,7 @@ void main()
         atomicMax(control.pixels_args.x, min(i + 1u, SS_DISPATCH_WIDTH));
         atomicMax(control.pixels_args.y, i / SS_DISPATCH_WIDTH + 1u);
         tiles[ss_undecided_slot(i)] = tile;
-    } else {
+    } else if (state == SS_STATE_UMBRA) {
         const uvec2 dark = state == SS_STATE_UMBRA ? receivers : uvec2(0u);
         for (int y = 0; y <= last.y; y++)
             for (int x = 0; x <= last.x; x++)

@@ -6,7 +6,7 @@
 
 layout(local_size_x = 32, local_size_y = 4) in;
 
-layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_OCCLUDERS, std430) readonly buffer ss_occluders_buffer
+layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_OCCLUDERS, std140) uniform ss_occluders_buffer
 {
     ss_occluders occ;
 };

@@ -6,9 +6,12 @@
 
 layout(local_size_x = 1) in;
 
-layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_OCCLUDERS, std430) buffer ss_occluders_buffer
+layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_OCCLUDERS, std140) uniform ss_occluders_buffer
 {
     ss_occluders occ;
+};
+layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_PLAN, std430) writeonly buffer ss_plan_buffer
+{
     ss_plan plan;
 };
 layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_FAN_DEPTH, std430) readonly buffer ss_fan_depth_buffer

@@ -5,7 +5,7 @@
 layout(set = SS_SET_IO, binding = SS_BIND_DEPTH) uniform texture2D camera_depth;
 layout(set = SS_SET_IO, binding = SS_BIND_NORMALS) uniform texture2D camera_normals;
 layout(set = SS_SET_IO, binding = SS_BIND_VISIBILITY) uniform writeonly image2D visibility_image;
-layout(set = SS_SET_IO, binding = SS_BIND_FRAME, std430) readonly buffer ss_frame_buffer
+layout(set = SS_SET_IO, binding = SS_BIND_FRAME, std140) uniform ss_frame_buffer
 {
     ss_frame frame;
 };

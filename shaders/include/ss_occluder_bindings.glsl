@@ -2,7 +2,7 @@
 #ifndef SS_OCCLUDER_BINDINGS_GLSL
 #define SS_OCCLUDER_BINDINGS_GLSL
 
-layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_OCCLUDERS, std430) readonly buffer ss_occluders_buffer
+layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_OCCLUDERS, std140) uniform ss_occluders_buffer
 {
     ss_occluders occ;
     ss_plan plan;

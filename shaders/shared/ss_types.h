@@ -1,5 +1,5 @@
 /* Structures and constants shared by C and GLSL. In C every size and offset is asserted (lib/shared.h); in GLSL the
- * structures are std430. vec3 and bool never appear. */
+ * structures mean the same under std140 and std430. vec3 and bool never appear. */
 #ifndef SS_TYPES_H
 #define SS_TYPES_H
 
@@ -33,18 +33,19 @@ typedef struct ss_ivec4 {
 
 /* Descriptor sets and bindings; every pipeline uses the same two set layouts. */
 #define SS_SET_OCCLUDERS 0
-#define SS_BIND_OCCLUDERS 0 /* ss_occluders and the plan */
+#define SS_BIND_OCCLUDERS 0 /* uniform: ss_occluders and ss_plan */
 #define SS_BIND_FAN_DEPTH 1 /* float per texel and layer: level 0 */
 #define SS_BIND_PYRAMID 2   /* vec2 (farthest, nearest) per HSM texel, levels 1 to top, layer after layer */
 #define SS_BIND_WIDE 3      /* sampled RG32F array: MSSM levels 1 to n of a layer, layer after layer */
 #define SS_BIND_WIDE_OUT 4  /* the same as storage image */
-#define SS_OCCLUDER_BINDINGS 5
+#define SS_BIND_PLAN 5      /* ss_plan, where it is written */
+#define SS_OCCLUDER_BINDINGS 6
 
 #define SS_SET_IO 1
 #define SS_BIND_DEPTH 0      /* sampled: the map (build) or the camera's depth */
 #define SS_BIND_NORMALS 1    /* sampled */
 #define SS_BIND_VISIBILITY 2 /* storage */
-#define SS_BIND_FRAME 3      /* ss_frame */
+#define SS_BIND_FRAME 3      /* uniform: ss_frame */
 #define SS_BIND_CONTROL 4    /* ss_control */
 #define SS_BIND_TILES 5      /* tile states and lists */
 #define SS_BIND_FILTER 6     /* area and bitmask occlusion per pixel */
@@ -94,6 +95,7 @@ SS_STRUCT(ss_occluders)
     SS_UVEC4 levels;     /* top of the pyramid, join level, wide levels allocated, unused */
     SS_UVEC4 strides;    /* texels per layer: fan depth, pyramid; unused */
     SS_UVEC4 offsets[4]; /* first texel of pyramid level i at [i / 4][i % 4]; level 0 unused */
+    SS_UVEC4 unused[4];  /* ss_plan begins at a multiple of every offset alignment */
 }
 SS_STRUCT_END(ss_occluders);
 
@@ -123,7 +125,7 @@ SS_STRUCT(ss_control)
 {
     SS_UVEC4 pixels_args;   /* groups x, y, z; tiles in the undecided list */
     SS_UVEC4 evaluate_args; /* likewise, penumbra list */
-    SS_UINT stats[20];      /* softsh_stats, as pairs of words */
+    SS_UINT stats[20];      /* softsh_stats, as pairs of words; storage buffers only */
     SS_UINT unused[4];
 }
 SS_STRUCT_END(ss_control);
