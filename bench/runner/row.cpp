@@ -224,8 +224,10 @@ std::string to_line(const Row &row)
         std::snprintf(text, sizeof text, "  error %.4f (rms %.4f)", row.error->mae, row.error->rmse);
         line += text;
     }
-    std::snprintf(text, sizeof text, "  %9.2f ms (build %.2f)", row.build_ms + row.visibility_ms, row.build_ms);
-    line += text;
+    if (!row.passes.empty()) {
+        std::snprintf(text, sizeof text, "  %9.2f ms (build %.2f)", row.build_ms + row.visibility_ms, row.build_ms);
+        line += text;
+    }
     if (row.stats) {
         std::snprintf(text, sizeof text, "  active %llu, %.0f primitives each", static_cast<unsigned long long>(row.stats->active),
                       per_active(row, &softsh_stats::primitives).value_or(0.0));
