@@ -31,6 +31,13 @@ static softsh_result check_same_projection(const softsh_context *context, const 
     return SOFTSH_SUCCESS;
 }
 
+/* An orthographic map's fan depth has its zero in the middle of the depth range: layers take over the first one's. */
+static void share_zero(const softshi_map_space *first, softshi_map_space *map)
+{
+    if (map->orthographic)
+        map->depth_offset += first->rows[2][3] / first->rows[3][3] - map->rows[2][3] / map->rows[3][3];
+}
+
 static softsh_result plan_build(const softsh_occluders *o, const softsh_build_info *info, build_plan *plan)
 {
     const softsh_context *context = o->context;
@@ -50,6 +57,8 @@ static softsh_result plan_build(const softsh_occluders *o, const softsh_build_in
         result = softshi_map_space_create(context, info->light, &info->maps[i], plan->extent, "softsh_map", &plan->maps[i]);
         if (result == SOFTSH_SUCCESS && i > 0)
             result = check_same_projection(context, &plan->maps[0], &plan->maps[i], i);
+        if (result == SOFTSH_SUCCESS && i > 0)
+            share_zero(&plan->maps[0], &plan->maps[i]);
     }
     if (result == SOFTSH_SUCCESS)
         result = softshi_light_space_create(context, info->light, &plan->maps[0], &plan->light);

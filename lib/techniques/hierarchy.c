@@ -85,7 +85,8 @@ void softshi_hierarchy_record_levels(softshi_recorder *recorder, const softsh_oc
             const softshi_pass pass = {
                 .pipeline = &o->pipelines.widen,
                 .reads = SOFTSHI_HEADER | SOFTSHI_PLAN | SOFTSHI_FAN_DEPTH | SOFTSHI_PYRAMID,
-                .writes = layer == 0 ? SOFTSHI_WIDE : 0,
+                /* Layers are apart, but each pass reads and writes one view of them all, and validation goes by views. */
+                .writes = SOFTSHI_WIDE,
                 .push = &push,
                 .push_size = sizeof push,
                 .indirect = o->block.buffer,
