@@ -9,7 +9,7 @@
 /* How far from parallel or from diagonal counts as rounding. */
 static const double tolerance = 1e-6;
 
-/* Width of a line light over its length. */
+/* Width of a line light over its length, in texels. */
 static const double line_width = 1e-3;
 
 static double length3(const double a[3])
@@ -60,9 +60,9 @@ static bool derive_projection(reference_map *map, const double view[16], const d
         if (fabs(projection[15] - 1.0) > 0.0 || !reference_normalize(map->rows[2], map->axis))
             return false;
         map->axis_length = 1.0;
-        /* Oriented along growing device depth for now: g = -z, and z = 0 is the view's origin plane. */
+        /* Oriented along growing device depth for now. */
         map->depth_scale = -1.0 / length3(map->rows[2]);
-        map->depth_offset = -map->depth_scale * p2[3];
+        map->depth_offset = -0.5 * map->depth_scale;
     }
     return true;
 }
@@ -130,18 +130,6 @@ static bool invert_a(reference_map *map)
     return true;
 }
 
-/* A line light: the axis it lacks, a thousandth of the other one, in the image plane. */
-static void widen_line(const reference_map *map, double axis_s[3], double axis_t[3])
-{
-    double *const missing = length3(axis_s) > 0.0 ? axis_t : axis_s;
-    const double *const other = missing == axis_s ? axis_t : axis_s;
-    if (length3(missing) > 0.0)
-        return;
-    reference_cross(map->axis, other, missing);
-    for (int i = 0; i < 3; ++i)
-        missing[i] *= line_width;
-}
-
 static bool derive_rectangle(reference_map *map, const softsh_light *light)
 {
     const double size[2] = {map->width, map->height};
@@ -151,8 +139,6 @@ static bool derive_rectangle(reference_map *map, const softsh_light *light)
     memcpy(map->axis_s, light->half_u, sizeof(map->axis_s));
     memcpy(map->axis_t, light->half_v, sizeof(map->axis_t));
     map->point = !(length3(map->axis_s) > 0.0) && !(length3(map->axis_t) > 0.0);
-    if (!map->point)
-        widen_line(map, map->axis_s, map->axis_t);
     map->epsilon = 1.0;
     map->delta = dot4(map->rows[3], map->center, 1.0) / map->axis_length;
     const double extent = fmax(length3(map->axis_s), length3(map->axis_t));
@@ -174,6 +160,8 @@ static bool derive_rectangle(reference_map *map, const softsh_light *light)
     if (map->point)
         return true;
     normalize_axes(map);
+    for (int i = 0; i < 2; ++i)
+        map->a[i][i] = fmax(map->a[i][i], line_width * map->a[1 - i][1 - i]);
     return invert_a(map);
 }
 
