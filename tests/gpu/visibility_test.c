@@ -1,0 +1,244 @@
+/* Every estimator against the double-precision reference, pixel by pixel, without hierarchy: all receivers are
+ * evaluated and no occluder is left out.
+ *
+ * The shader's floats move the borders of back-projections a little, so that single light samples change sides; the
+ * reference is right about them, and nobody would notice. What is tested is how many do, in numbers that a mistake in
+ * any formula exceeds. The table printed at the end has the differences of each estimator. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fixture.h"
+#include "reference_visibility.h"
+#include "scenes.h"
+
+enum { MAX_PIXELS = 32 * 24, SCENES = 13 };
+
+/* Several times what the software drivers have. */
+static const double mean_limit = 2e-5, notable_limit = 5e-4, hard_limit = 2e-4;
+
+/* A scene on the device, and its receivers in double precision. */
+typedef struct stage {
+    scene_info info;
+    sight_options options;
+    scene scene;
+    lamp lamp;
+    eye eye[2];
+    reference_map map;
+    float *g[2];
+    reference_receiver *receivers[2]; /* without and with normals */
+} stage;
+
+static stage stages[SCENES] = {
+    {.info = {.light = SCENE_CENTRED}},
+    {.info = {.light = SCENE_IN_FRONT, .content = SCENE_NOISE}},
+    {.info = {.light = SCENE_SUN}},
+    {.info = {.light = SCENE_TILTED_SUN, .content = SCENE_NOISE}},
+    {.info = {.light = SCENE_ROTATED}},
+    {.info = {.light = SCENE_CENTRED, .content = SCENE_NASTY}},
+    {.info = {.light = SCENE_TILTED_SUN, .range = REFERENCE_DEPTH_REVERSED}},
+    {.info = {.light = SCENE_IN_FRONT, .layers = 2, .range = REFERENCE_DEPTH_REVERSED_INFINITE}},
+    {.info = {.light = SCENE_ROTATED, .content = SCENE_NOISE}},
+    {.info = {.light = SCENE_SUN, .content = SCENE_NASTY, .layers = 2}},
+    {.info = {.light = SCENE_CENTRED, .content = SCENE_NOISE}, .options = {true, 0.05}},
+    {.info = {.light = SCENE_IN_FRONT, .range = REFERENCE_DEPTH_INFINITE}},
+    {.info = {.light = SCENE_TILTED_SUN}, .options = {true, 0.02}},
+};
+
+/* Differences of one estimator. */
+typedef struct differences {
+    uint64_t pixels, penumbra, notable; /* all, partly lit ones, and those off by more than 4/256 */
+    double sum, most;
+    char worst[160];
+} differences;
+
+static void stage_create(stage *s)
+{
+    scene_create(&s->info, &s->scene);
+    lamp_create(&s->scene.lamp, &s->lamp);
+    lamp_reference(&s->scene.lamp, &s->map);
+    for (uint32_t i = 0; i < s->scene.lamp.layer_count; i++) {
+        s->g[i] = malloc((size_t)s->map.width * s->map.height * sizeof(float));
+        assert_non_null(s->g[i]);
+        lamp_fan_depth(&s->scene.lamp, i, s->g[i]);
+    }
+    for (int normals = 0; normals < 2; normals++) {
+        eye_info info = s->scene.eye;
+        reference_camera camera;
+        if (!normals)
+            info.normals = NULL;
+        eye_create(&info, &s->eye[normals]);
+        eye_reference(&info, &camera);
+        const reference_camera_image image = {info.depth, info.normals};
+        reference_bias bias = precision_of(&s->scene.lamp, &info);
+        bias.override_bias = s->options.override_bias;
+        bias.bias = s->options.bias;
+        s->receivers[normals] = calloc(MAX_PIXELS, sizeof *s->receivers[normals]);
+        assert_non_null(s->receivers[normals]);
+        for (uint32_t i = 0; i < camera.width * camera.height; i++)
+            reference_receiver_derive(&s->receivers[normals][i], &s->map, &camera, &image, &bias, i % camera.width,
+                                      i / camera.width);
+    }
+}
+
+static void stage_destroy(stage *s)
+{
+    lamp_destroy(&s->lamp);
+    for (int i = 0; i < 2; i++) {
+        eye_destroy(&s->eye[i]);
+        free(s->g[i]);
+        free(s->receivers[i]);
+    }
+    scene_destroy(&s->scene);
+}
+
+static void compare(const stage *s, sight *view, const softsh_settings *settings, bool normals, differences *out)
+{
+    const float *const layers[2] = {s->g[0], s->g[1]};
+    const reference_settings wanted = {.pattern = settings->pattern,
+                                       .primitive = settings->primitive,
+                                       .aggregation = settings->aggregation,
+                                       .merge = settings->merge,
+                                       .level = settings->min_level};
+    float visibility[MAX_PIXELS];
+
+    sight_run(view, &s->lamp, &s->eye[normals], &s->options, visibility, NULL);
+    for (uint32_t i = 0; i < MAX_PIXELS; i++) {
+        reference_occlusion o;
+        assert_true(
+            reference_visibility(&s->map, layers, s->scene.lamp.layer_count, &wanted, &s->receivers[normals][i], &o));
+        const double right = settings->technique == SOFTSH_TECHNIQUE_AREA ? 1.0 - fmin(o.area, 1.0) : 1.0 - o.bitmask;
+        const double difference = fabs((double)visibility[i] - right);
+        out->penumbra += right > 0.0 && right < 1.0;
+        /* Not a number is not near anything. */
+        out->notable += !(difference <= 4.0 / 256.0);
+        out->sum += difference;
+        out->pixels++;
+        if (!(difference <= out->most)) {
+            out->most = difference;
+            snprintf(out->worst, sizeof out->worst, "%s, %s%s, aggregation %d, level %u, pixel (%u, %u): %.4f for %.4f",
+                     scene_light_name(s->info.light), scene_content_name(s->info.content), normals ? ", normals" : "",
+                     (int)settings->aggregation, settings->min_level, i % 32, i / 32, (double)visibility[i], right);
+        }
+    }
+}
+
+/* One view, seen by three of the scenes; the walk through the scenes goes on from view to view. */
+static void check_view(const softsh_settings *settings, bool normals, uint32_t *next, differences *out)
+{
+    const bool patches = settings->primitive == SOFTSH_PRIMITIVE_MICROPATCH ||
+                         settings->primitive == SOFTSH_PRIMITIVE_MICROPATCH_UNEXTENDED;
+    const sight_info info = {.settings = *settings, .width = 32, .height = 24, .normals = normals};
+    sight view;
+
+    sight_create(&info, &view);
+    for (uint32_t k = 0; k < 3; k++) {
+        while (patches && stages[*next % SCENES].info.light == SCENE_ROTATED)
+            ++*next;
+        compare(&stages[(*next)++ % SCENES], &view, settings, normals, out);
+    }
+    sight_destroy(&view);
+}
+
+static void check_estimators(softsh_technique technique, softsh_pattern first, softsh_pattern last)
+{
+    static const char *const primitives[] = {"", "micropatch", "micropatch unextended", "microquad",
+                                             "microquad rectangle"};
+    static const char *const patterns[] = {"", "8x8", "16x16", "16x16 jittered", "32x32"};
+    uint32_t next = 0, views = 0;
+    bool failed = false;
+
+    print_message("%-9s%-23s%-16s%9s%9s%10s%12s\n", "", "primitive", "pattern", "penumbra", "maximum", "mean",
+                  "over 4/256");
+    for (int primitive = SOFTSH_PRIMITIVE_MICROPATCH; primitive <= SOFTSH_PRIMITIVE_MICROQUAD_RECTANGLE; primitive++)
+        for (int pattern = (int)first; pattern <= (int)last; pattern++) {
+            differences d = {0};
+            for (uint32_t variant = 0; variant < 5; variant++) {
+                const softsh_settings settings = {
+                    .technique = technique,
+                    .pattern = (softsh_pattern)pattern,
+                    .primitive = (softsh_primitive)primitive,
+                    .aggregation = variant % 2 ? SOFTSH_AGGREGATION_NEAREST : SOFTSH_AGGREGATION_SAMPLED,
+                    .merge = views % 2 ? SOFTSH_MERGE_MAXIMUM : SOFTSH_MERGE_UNION,
+                    .min_level = (variant + 1) / 2,
+                    .no_hierarchy = 1,
+                };
+                check_view(&settings, views++ % 3 == 2, &next, &d);
+            }
+            const double pixels = (double)d.pixels;
+            print_message(
+                "%-9s%-23s%-16s%8.1f%%%9.5f%10.7f%11.3f%%\n", technique == SOFTSH_TECHNIQUE_AREA ? "area" : "bitmask",
+                primitives[primitive], technique == SOFTSH_TECHNIQUE_AREA ? "" : patterns[pattern],
+                100.0 * (double)d.penumbra / pixels, d.most, d.sum / pixels, 100.0 * (double)d.notable / pixels);
+            if (d.notable)
+                print_message("         worst: %s\n", d.worst);
+            failed = failed || !(d.sum <= mean_limit * pixels) || !((double)d.notable <= notable_limit * pixels);
+            assert_true((double)d.penumbra > 0.1 * pixels);
+        }
+    assert_false(failed);
+}
+
+static void bitmasks_are_the_references(void **state)
+{
+    (void)state;
+    check_estimators(SOFTSH_TECHNIQUE_BITMASK, SOFTSH_PATTERN_8X8, SOFTSH_PATTERN_32X32);
+}
+
+static void areas_are_the_references(void **state)
+{
+    (void)state;
+    check_estimators(SOFTSH_TECHNIQUE_AREA, SOFTSH_PATTERN_16X16, SOFTSH_PATTERN_16X16);
+}
+
+/* Lights without size: every pixel is dark or lit, and settings do not matter. */
+static void hard_shadows_are_the_references(void **state)
+{
+    differences d = {0};
+    (void)state;
+    for (int normals = 0; normals < 2; normals++) {
+        const softsh_settings settings = {.technique = SOFTSH_TECHNIQUE_BITMASK,
+                                          .primitive = SOFTSH_PRIMITIVE_MICROPATCH};
+        const sight_info info = {.settings = settings, .width = 32, .height = 24, .normals = normals != 0};
+        sight view;
+        sight_create(&info, &view);
+        for (uint32_t k = 0; k < 2 * SCENES; k++) {
+            stage s = {.info = stages[k % SCENES].info, .options = stages[k % SCENES].options};
+            s.info.hard = true;
+            s.info.seed = 7 + k;
+            stage_create(&s);
+            compare(&s, &view, &settings, normals != 0, &d);
+            stage_destroy(&s);
+        }
+        sight_destroy(&view);
+    }
+    print_message("hard: %u of %u pixels differ; %s\n", (unsigned)d.notable, (unsigned)d.pixels, d.worst);
+    assert_true((double)d.notable <= hard_limit * (double)d.pixels);
+}
+
+static int setup(void **state)
+{
+    const int failed = fixture_setup(state);
+    for (uint32_t i = 0; i < SCENES && !failed; i++) {
+        stages[i].info.seed = i;
+        stage_create(&stages[i]);
+    }
+    return failed;
+}
+
+static int teardown(void **state)
+{
+    for (uint32_t i = 0; i < SCENES; i++)
+        stage_destroy(&stages[i]);
+    return fixture_teardown(state);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bitmasks_are_the_references),
+        cmocka_unit_test(areas_are_the_references),
+        cmocka_unit_test(hard_shadows_are_the_references),
+    };
+    return cmocka_run_group_tests(tests, setup, teardown);
+}
