@@ -1,5 +1,6 @@
 /* softsh_cmd_build_occluders: checks, the light in map space, and the passes of the hierarchy. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "occluders.h"
@@ -46,7 +47,7 @@ static softsh_result plan_build(const softsh_occluders *o, const softsh_build_in
     if (info->struct_size != sizeof *info)
         return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_build_info::struct_size is %u, expected %u",
                             info->struct_size, (unsigned)sizeof *info);
-    if (!o->block.bound)
+    if (!o->block.ready)
         return softshi_fail(context, SOFTSH_ERROR_STATE, "softsh_cmd_build_occluders: no memory is bound to the occluders");
     softsh_result result = softshi_check_light(context, info->light);
     if (result == SOFTSH_SUCCESS)
@@ -54,7 +55,9 @@ static softsh_result plan_build(const softsh_occluders *o, const softsh_build_in
     if (result == SOFTSH_SUCCESS)
         result = softshi_check_timestamps(context, info->timestamps);
     for (uint32_t i = 0; i < info->map_count && result == SOFTSH_SUCCESS; i++) {
-        result = softshi_map_space_create(context, info->light, &info->maps[i], plan->extent, "softsh_map", &plan->maps[i]);
+        char field[32];
+        snprintf(field, sizeof field, "softsh_map[%u]", i);
+        result = softshi_map_space_create(context, info->light, &info->maps[i], plan->extent, field, &plan->maps[i]);
         if (result == SOFTSH_SUCCESS && i > 0)
             result = check_same_projection(context, &plan->maps[0], &plan->maps[i], i);
         if (result == SOFTSH_SUCCESS && i > 0)

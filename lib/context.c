@@ -73,7 +73,10 @@ static VkResult create_set_layout(softsh_context *context, const VkDescriptorTyp
         .bindingCount = count,
         .pBindings = bindings,
     };
-    return context->vk.CreateDescriptorSetLayout(context->device, &info, context->allocator, out);
+    const VkResult result = context->vk.CreateDescriptorSetLayout(context->device, &info, context->allocator, out);
+    if (result != VK_SUCCESS)
+        *out = VK_NULL_HANDLE; /* what a failed call leaves there is undefined */
+    return result;
 }
 
 static VkResult create_layouts(softsh_context *context)
@@ -102,7 +105,10 @@ static VkResult create_layouts(softsh_context *context)
         .pushConstantRangeCount = 1,
         .pPushConstantRanges = &range,
     };
-    return context->vk.CreatePipelineLayout(context->device, &info, context->allocator, &context->pipeline_layout);
+    result = context->vk.CreatePipelineLayout(context->device, &info, context->allocator, &context->pipeline_layout);
+    if (result != VK_SUCCESS)
+        context->pipeline_layout = VK_NULL_HANDLE;
+    return result;
 }
 
 static softsh_result initialize(softsh_context *context, const softsh_context_info *info)

@@ -41,8 +41,10 @@ static softsh_result create_resources(softsh_occluders *o)
         .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
     };
     VkResult result = context->vk.CreateBuffer(context->device, &buffer_info, context->allocator, &o->block.buffer);
-    if (result != VK_SUCCESS)
+    if (result != VK_SUCCESS) {
+        o->block.buffer = VK_NULL_HANDLE;
         return softshi_fail_vulkan(context, result, "vkCreateBuffer");
+    }
     /* An HSM has no wide levels, but its passes share a descriptor set that names the image. */
     const bool wide = o->layout.wide_levels > 0;
     const VkImageCreateInfo image_info = {
@@ -101,8 +103,10 @@ static softsh_result create_sets(softsh_occluders *o, uint32_t recordings)
         .pPoolSizes = sizes,
     };
     VkResult result = context->vk.CreateDescriptorPool(context->device, &pool_info, context->allocator, &o->pool);
-    if (result != VK_SUCCESS)
+    if (result != VK_SUCCESS) {
+        o->pool = VK_NULL_HANDLE;
         return softshi_fail_vulkan(context, result, "vkCreateDescriptorPool");
+    }
     VkDescriptorSetAllocateInfo set_info = {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
         .descriptorPool = o->pool,
@@ -130,6 +134,7 @@ static softsh_result finish(softsh_occluders *o)
     const VkResult result = context->vk.CreateImageView(context->device, &view_info, context->allocator, &o->wide_view);
     if (result != VK_SUCCESS) {
         o->wide_view = VK_NULL_HANDLE;
+        o->block.ready = false;
         return softshi_fail_vulkan(context, result, "vkCreateImageView");
     }
     const softshi_range plan = {o->layout.header.offset + sizeof(ss_occluders), sizeof(ss_plan)};
@@ -225,8 +230,10 @@ void softsh_occluders_destroy(softsh_occluders *o)
 
 softsh_result softsh_occluders_memory_requirements(const softsh_occluders *o, VkMemoryRequirements *out)
 {
-    if (!o || !out)
+    if (!o)
         return SOFTSH_ERROR_INVALID_ARGUMENT;
+    if (!out)
+        return softshi_fail(o->context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_occluders_memory_requirements: out is NULL");
     *out = o->block.requirements;
     return SOFTSH_SUCCESS;
 }

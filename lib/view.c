@@ -26,8 +26,10 @@ static softsh_result create_buffer(softsh_view *v)
         .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
     };
     const VkResult result = context->vk.CreateBuffer(context->device, &info, context->allocator, &v->block.buffer);
-    if (result != VK_SUCCESS)
+    if (result != VK_SUCCESS) {
+        v->block.buffer = VK_NULL_HANDLE;
         return softshi_fail_vulkan(context, result, "vkCreateBuffer");
+    }
     softshi_name_object(context, VK_OBJECT_TYPE_BUFFER, (uint64_t)v->block.buffer, v->name, "view scratch");
     softshi_block_measure(context, &v->block);
     return SOFTSH_SUCCESS;
@@ -53,8 +55,10 @@ static softsh_result create_sets(softsh_view *v, uint32_t recordings)
         .pPoolSizes = sizes,
     };
     VkResult result = context->vk.CreateDescriptorPool(context->device, &pool_info, context->allocator, &v->pool);
-    if (result != VK_SUCCESS)
+    if (result != VK_SUCCESS) {
+        v->pool = VK_NULL_HANDLE;
         return softshi_fail_vulkan(context, result, "vkCreateDescriptorPool");
+    }
     const VkDescriptorSetAllocateInfo set_info = {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
         .descriptorPool = v->pool,
@@ -140,8 +144,10 @@ void softsh_view_destroy(softsh_view *v)
 
 softsh_result softsh_view_memory_requirements(const softsh_view *v, VkMemoryRequirements *out)
 {
-    if (!v || !out)
+    if (!v)
         return SOFTSH_ERROR_INVALID_ARGUMENT;
+    if (!out)
+        return softshi_fail(v->context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_view_memory_requirements: out is NULL");
     *out = v->block.requirements;
     return SOFTSH_SUCCESS;
 }

@@ -14,7 +14,7 @@ static softsh_result check(const softsh_view *v, const softsh_visibility_info *i
     if (info->struct_size != sizeof *info)
         return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_visibility_info::struct_size is %u, expected %u",
                             info->struct_size, (unsigned)sizeof *info);
-    if (!v->block.bound)
+    if (!v->block.ready)
         return softshi_fail(context, SOFTSH_ERROR_STATE, "softsh_cmd_compute_visibility: no memory is bound to the view");
     if (!info->occluders)
         return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_visibility_info::occluders is NULL");
@@ -22,8 +22,10 @@ static softsh_result check(const softsh_view *v, const softsh_visibility_info *i
         return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_visibility_info::occluders belongs to another context");
     if (!info->occluders->built)
         return softshi_fail(context, SOFTSH_ERROR_STATE, "softsh_visibility_info::occluders was never built");
-    if (!info->cameras || info->camera_count == 0)
-        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_visibility_info has no camera, expected 1");
+    if (info->camera_count == 0)
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_visibility_info::camera_count is 0, expected 1");
+    if (!info->cameras)
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_visibility_info::cameras is NULL");
     if (info->camera_count > 1)
         return softshi_fail(context, SOFTSH_ERROR_UNSUPPORTED,
                             "softsh_visibility_info::camera_count is %u, more than 1 is not supported yet", info->camera_count);

@@ -44,12 +44,13 @@ void softshi_block_measure(const softsh_context *context, softshi_block *block)
 
 static softsh_result bind(const softsh_context *context, softshi_block *block, VkDeviceMemory memory, VkDeviceSize offset)
 {
+    block->bound = true;
     VkResult result = context->vk.BindBufferMemory(context->device, block->buffer, memory, offset);
     if (result == VK_SUCCESS && block->image)
         result = context->vk.BindImageMemory(context->device, block->image, memory, offset + block->image_offset);
     if (result != VK_SUCCESS)
         return softshi_fail_vulkan(context, result, "binding memory");
-    block->bound = true;
+    block->ready = true;
     return SOFTSH_SUCCESS;
 }
 
@@ -84,8 +85,10 @@ softsh_result softshi_block_allocate(const softsh_context *context, softshi_bloc
         .memoryTypeIndex = type,
     };
     const VkResult result = context->vk.AllocateMemory(context->device, &info, context->allocator, &block->owned);
-    if (result != VK_SUCCESS)
+    if (result != VK_SUCCESS) {
+        block->owned = VK_NULL_HANDLE;
         return softshi_fail_vulkan(context, result, "vkAllocateMemory");
+    }
     return bind(context, block, block->owned, 0);
 }
 
@@ -95,7 +98,8 @@ softsh_result softshi_block_bind(const softsh_context *context, softshi_block *b
     if (block->owned)
         return softshi_fail(context, SOFTSH_ERROR_STATE, "%s: the object has the library's memory", call);
     if (block->bound)
-        return softshi_fail(context, SOFTSH_ERROR_STATE, "%s: memory is bound already", call);
+        return softshi_fail(context, SOFTSH_ERROR_STATE, "%s: %s", call,
+                            block->ready ? "memory is bound already" : "an earlier try failed, the object is of no use");
     if (!memory)
         return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "%s: memory is VK_NULL_HANDLE", call);
     if (offset % block->requirements.alignment != 0)
