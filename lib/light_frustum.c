@@ -18,6 +18,8 @@ softsh_result softsh_light_frustum_create(const softsh_light *light, const doubl
 {
     if (!light || light->struct_size != sizeof *light || !target || !out || out->struct_size != sizeof *out)
         return SOFTSH_ERROR_INVALID_ARGUMENT;
+    if ((unsigned)light->shape > SOFTSH_LIGHT_SPHERE)
+        return SOFTSH_ERROR_INVALID_ARGUMENT;
     if (light->shape != SOFTSH_LIGHT_RECTANGLE)
         return SOFTSH_ERROR_UNSUPPORTED;
     if (!softshi_all_finite(light->center, 3) || !softshi_all_finite(light->half_u, 3) ||
@@ -60,6 +62,8 @@ softsh_result softsh_light_frustum_create(const softsh_light *light, const doubl
     const double angle = atan2(fmax(offset[0], offset[1]), distance) + (radius < span ? asin(radius / span) : 1.4);
     const double tangent = tan(fmin(angle, 1.4));
     const double farthest = distance + radius;
+    if (!(nearest * farthest < HUGE_VAL))
+        return SOFTSH_ERROR_INVALID_ARGUMENT;
     memset(out->view_matrix, 0, sizeof out->view_matrix);
     memset(out->projection, 0, sizeof out->projection);
     for (int c = 0; c < 3; c++) {

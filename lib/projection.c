@@ -22,6 +22,14 @@ static double determinant_sign(const double a[3], const double b[3], const doubl
     return det > 0.0 ? 1.0 : det < 0.0 ? -1.0 : 0.0;
 }
 
+static bool fits_floats(const double *values, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (!isfinite((float)values[i]))
+            return false;
+    return true;
+}
+
 /* Reads the depth convention off projection * view. */
 static softsh_result read_clip_depth(const softsh_context *context, const double clip[16], const char *field, clip_depth *out)
 {
@@ -37,7 +45,7 @@ static softsh_result read_clip_depth(const softsh_context *context, const double
         /* Right, down and forward form a right-handed frame, so a reversed depth shows in the orientation. */
         out->far_depth = determinant_sign(r0, r1, r2) >= 0.0 ? 1.0 : 0.0;
         if (!(r3[3] > 0.0))
-            return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "%s: clip w is %g everywhere, expected a positive number",
+            return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "%s::projection: clip w is %g everywhere, expected a positive number",
                                 field, r3[3]);
         return SOFTSH_SUCCESS;
     }
@@ -48,9 +56,9 @@ static softsh_result read_clip_depth(const softsh_context *context, const double
         residual = fmax(residual, fabs(r2[i] - out->alpha * r3[i]));
     if (residual > 1e-5 * n)
         return softshi_fail(context, SOFTSH_ERROR_UNSUPPORTED,
-                            "%s: its depth is not a function of distance (an oblique near plane), which is not supported", field);
+                            "%s::projection: depth is not a function of distance (an oblique near plane), which is not supported", field);
     if (!(fabs(out->beta) > 0.0))
-        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "%s: every point has the same depth", field);
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "%s::projection: every point has the same depth", field);
     out->far_depth = out->beta < 0.0 ? 1.0 : 0.0;
     return SOFTSH_SUCCESS;
 }
@@ -126,8 +134,9 @@ softsh_result softshi_map_space_create(const softsh_context *context, const soft
         out->texel[1] = n / (half[1] * softshi_length3(across[1]));
         out->normal_sign = -determinant_sign(out->rows[0], out->rows[1], r3);
     }
+    /* Shaders get the linear part as it is, the rest only together with a camera. */
     for (int i = 0; i < 4; i++)
-        if (!softshi_all_finite(out->rows[i], 4))
+        if (!fits_floats(out->rows[i], 3) || !isfinite(out->rows[i][3]))
             return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "%s: its matrices overflow", field);
     if (!isfinite(out->texel[0]) || !isfinite(out->texel[1]) || out->normal_sign == 0.0 || !isfinite((float)out->depth_scale) ||
         !isfinite((float)out->depth_offset))
@@ -226,7 +235,9 @@ softsh_result softshi_light_space_create(const softsh_context *context, const so
     for (int k = 0; k < 2; k++)
         if (!out->point && out->a[k][k] < 1e-3 * side)
             out->a[k][k] = 1e-3 * side;
-    if (!out->point && (!isfinite((float)side) || side < 1e-12))
+    if (!fits_floats(out->u, 2) || !fits_floats(&out->delta, 1))
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_light::center is too far from the map");
+    if (!out->point && (!fits_floats(&out->a[0][0], 4) || side < 1e-12))
         return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_light: its extent is %g texels per unit, expected 1e-12 to 3e38",
                             side);
     return SOFTSH_SUCCESS;
@@ -253,6 +264,8 @@ softsh_result softshi_camera_space_create(const softsh_context *context, const s
             largest = fmax(largest, fabs(rows[r][c]));
         }
     }
+    if (!(largest > 0.0) || !isfinite(largest))
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_camera: its matrices overflow together with the map's");
     /* Homogeneous: the common factor is free, and near one no row leaves the range of floats. */
     for (int r = 0; r < 4; r++) {
         for (int c = 0; c < 4; c++) {

@@ -40,6 +40,9 @@ softsh_result softshi_check_context_info(softsh_context *context, const softsh_c
     const VkAllocationCallbacks *allocator = info->allocation_callbacks;
     if (allocator && (!allocator->pfnAllocation || !allocator->pfnFree || !allocator->pfnReallocation))
         return INVALID("softsh_context_info::allocation_callbacks lacks pfnAllocation, pfnReallocation or pfnFree");
+    if (allocator && !allocator->pfnInternalAllocation != !allocator->pfnInternalFree)
+        return INVALID("softsh_context_info::allocation_callbacks has one of pfnInternalAllocation and pfnInternalFree, "
+                       "expected both or none");
     return SOFTSH_SUCCESS;
 }
 
@@ -141,6 +144,8 @@ softsh_result softshi_check_view_info(const softsh_context *context, const softs
 
 softsh_result softshi_check_light(const softsh_context *context, const softsh_light *light)
 {
+    if (!light)
+        return INVALID("softsh_build_info::light is NULL");
     CHECK_STRUCT(light, softsh_light);
     if ((unsigned)light->shape > SOFTSH_LIGHT_SPHERE)
         return INVALID("softsh_light::shape is %d, expected a softsh_light_shape", (int)light->shape);
@@ -151,6 +156,8 @@ softsh_result softshi_check_light(const softsh_context *context, const softsh_li
         return UNSUPPORTED("softsh_light::color_count is %u, more than 1 is not supported yet", light->color_count);
     if (light->texture)
         return UNSUPPORTED("softsh_light::texture is set, which is not supported yet");
+    if (!(light->radius == 0.0))
+        return INVALID("softsh_light::radius is %g, expected 0 for this shape", light->radius);
     if (light->shape == SOFTSH_LIGHT_DIRECTIONAL) {
         if (!softshi_all_finite(light->direction, 3) || !(softshi_length3(light->direction) > 0.0) ||
             !isfinite(softshi_length3(light->direction)))
@@ -175,31 +182,32 @@ softsh_result softshi_check_light(const softsh_context *context, const softsh_li
     if (fabs(softshi_dot3(light->half_u, light->half_v)) > 1e-3 * u * v)
         return INVALID("softsh_light::half_u and half_v enclose %.3g rad, expected a right angle",
                        acos(fmax(fmin(softshi_dot3(light->half_u, light->half_v) / (u * v), 1.0), -1.0)));
-    if (!(light->radius == 0.0))
-        return INVALID("softsh_light::radius is %g, expected 0 for a rectangle", light->radius);
     return SOFTSH_SUCCESS;
 }
 
-static softsh_result check_depth_input(const softsh_context *context, const char *field, VkImageView view, VkFormat format,
-                                       VkImageLayout layout)
+/* `owner` and the last three names make up the fields' names. */
+static softsh_result check_depth_input(const softsh_context *context, const char *owner, const char *const names[3],
+                                       VkImageView view, VkFormat format, VkImageLayout layout)
 {
     static const VkFormat formats[] = {VK_FORMAT_D16_UNORM,  VK_FORMAT_X8_D24_UNORM_PACK32, VK_FORMAT_D24_UNORM_S8_UINT,
                                        VK_FORMAT_D32_SFLOAT, VK_FORMAT_D32_SFLOAT_S8_UINT,  VK_FORMAT_R32_SFLOAT};
     if (!view)
-        return INVALID("%s is VK_NULL_HANDLE", field);
+        return INVALID("%s::%s is VK_NULL_HANDLE", owner, names[0]);
     bool known = false;
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
         known = known || format == formats[i];
     if (!known)
-        return UNSUPPORTED("%s has VkFormat %d, expected a depth format or R32_SFLOAT", field, (int)format);
+        return UNSUPPORTED("%s::%s is VkFormat %d, expected a depth format or R32_SFLOAT", owner, names[1], (int)format);
     VkFormatProperties properties;
     context->vk.GetPhysicalDeviceFormatProperties(context->physical_device, format, &properties);
     if (!(properties.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT))
-        return UNSUPPORTED("%s has VkFormat %d, which this device cannot sample", field, (int)format);
+        return UNSUPPORTED("%s::%s is VkFormat %d, which this device cannot sample", owner, names[1], (int)format);
     if (layout != VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL && layout != VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL &&
         layout != VK_IMAGE_LAYOUT_GENERAL)
-        return INVALID("%s has VkImageLayout %d, expected SHADER_READ_ONLY_OPTIMAL, DEPTH_STENCIL_READ_ONLY_OPTIMAL or GENERAL",
-                       field, (int)layout);
+        return INVALID("%s::%s is VkImageLayout %d, expected SHADER_READ_ONLY_OPTIMAL, DEPTH_STENCIL_READ_ONLY_OPTIMAL or GENERAL",
+                       owner, names[2], (int)layout);
+    if (format == VK_FORMAT_R32_SFLOAT && layout == VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL)
+        return INVALID("%s::%s is DEPTH_STENCIL_READ_ONLY_OPTIMAL, which colour images never are", owner, names[2]);
     return SOFTSH_SUCCESS;
 }
 
@@ -227,9 +235,10 @@ static softsh_result check_map(const softsh_context *context, const softsh_map *
         return INVALID("softsh_map[%u]::index is %u, expected less than the number of maps, %u", i, map->index, count);
     if (map->array_layer != 0)
         return UNSUPPORTED("softsh_map[%u]::array_layer is %u, expected 0 and a view of the layer", i, map->array_layer);
+    static const char *const names[] = {"view", "format", "layout"};
     char field[48];
-    snprintf(field, sizeof field, "softsh_map[%u]::view", i);
-    const softsh_result result = check_depth_input(context, field, map->view, map->format, map->layout);
+    snprintf(field, sizeof field, "softsh_map[%u]", i);
+    const softsh_result result = check_depth_input(context, field, names, map->view, map->format, map->layout);
     if (result != SOFTSH_SUCCESS)
         return result;
     snprintf(field, sizeof field, "softsh_map[%u]::image_extent", i);
@@ -239,8 +248,10 @@ static softsh_result check_map(const softsh_context *context, const softsh_map *
 softsh_result softshi_check_maps(const softsh_context *context, const softsh_map *maps, uint32_t count,
                                  VkExtent2D max_extent, uint32_t max_layers, VkExtent2D *extent)
 {
-    if (count == 0 || !maps)
-        return INVALID("softsh_build_info has no maps, expected 1 to %u", max_layers);
+    if (count == 0)
+        return INVALID("softsh_build_info::map_count is 0, expected 1 to %u", max_layers);
+    if (!maps)
+        return INVALID("softsh_build_info::maps is NULL");
     if (count > max_layers)
         return softshi_fail(context, SOFTSH_ERROR_LIMIT, "softsh_build_info::map_count is %u, expected at most max_layers, %u",
                             count, max_layers);
@@ -274,8 +285,9 @@ softsh_result softshi_check_camera(const softsh_context *context, const softsh_c
     CHECK_STRUCT(camera, softsh_camera);
     if (camera->samples != 0 && camera->samples != VK_SAMPLE_COUNT_1_BIT)
         return UNSUPPORTED("softsh_camera::samples is %d, more than one is not supported yet", (int)camera->samples);
+    static const char *const names[] = {"depth", "depth_format", "depth_layout"};
     const softsh_result result =
-        check_depth_input(context, "softsh_camera::depth", camera->depth, camera->depth_format, camera->depth_layout);
+        check_depth_input(context, "softsh_camera", names, camera->depth, camera->depth_format, camera->depth_layout);
     if (result != SOFTSH_SUCCESS)
         return result;
     if (normals && !camera->normals)
@@ -299,5 +311,8 @@ softsh_result softshi_check_timestamps(const softsh_context *context, const soft
     if (timestamps->query_count < SOFTSH_MAX_PASSES + 1)
         return INVALID("softsh_timestamps::query_count is %u, expected at least %u", timestamps->query_count,
                        SOFTSH_MAX_PASSES + 1);
+    if (timestamps->first_query > UINT32_MAX - timestamps->query_count)
+        return INVALID("softsh_timestamps::first_query is %u, which with %u queries passes the largest number",
+                       timestamps->first_query, timestamps->query_count);
     return SOFTSH_SUCCESS;
 }
