@@ -134,8 +134,13 @@ static float rubbish(size_t i)
 static void upload(placement p, VkFormat format, uint32_t channels, const float *values, VkImageLayout layout,
                    gpu_image *out)
 {
-    const gpu_image_info info = {
-        .format = format, .width = p.image_width, .height = p.image_height, .usage = VK_IMAGE_USAGE_SAMPLED_BIT};
+    /* A renderer's depth buffer is an attachment as well, which its read-only layout asks for. */
+    const VkImageUsageFlags attachment =
+        format == VK_FORMAT_R32_SFLOAT || channels > 1 ? 0 : VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+    const gpu_image_info info = {.format = format,
+                                 .width = p.image_width,
+                                 .height = p.image_height,
+                                 .usage = VK_IMAGE_USAGE_SAMPLED_BIT | attachment};
     const size_t texels = (size_t)p.image_width * p.image_height, texel = gpu_format_size(format);
     const double steps = depth_steps(format);
     unsigned char *bytes = malloc(texels * texel);

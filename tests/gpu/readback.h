@@ -1,0 +1,25 @@
+/* What an occluders object holds on the device, through the library's internal headers. */
+#ifndef READBACK_H
+#define READBACK_H
+
+#include "fixture.h"
+#include "reference_hierarchy.h"
+
+typedef struct readback {
+    uint32_t width, height, layers;
+    uint32_t top, join;                  /* levels of the pyramid; the one the wide levels start from */
+    uint32_t wide_allocated, wide_built; /* levels */
+    uint32_t wide_width, wide_height;    /* of the image */
+    uint32_t pyramid_offsets[16], pyramid_stride;
+    float *fan_depth; /* layer after layer */
+    reference_range *pyramid, *wide;
+} readback;
+
+void readback_create(const lamp *l, readback *out);
+void readback_destroy(readback *r);
+/* One texel of pyramid level `level` and, at the resolution of level `join`, of wide level `level`; both count from 1.
+ */
+reference_range readback_pyramid(const readback *r, uint32_t layer, uint32_t level, uint32_t x, uint32_t y);
+reference_range readback_wide(const readback *r, uint32_t layer, uint32_t level, uint32_t x, uint32_t y);
+
+#endif
