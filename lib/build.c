@@ -94,7 +94,8 @@ static void fill_header(const softsh_occluders *o, const softsh_build_info *info
                            (map->orthographic ? SS_FLAG_ORTHOGRAPHIC : 0u) | (light->disc ? SS_FLAG_DISC : 0u)};
     out->levels = (ss_uvec4){plan->layout.top, plan->layout.join, o->layout.wide_levels, 0};
     out->strides = (ss_uvec4){plan->extent.width * plan->extent.height, plan->layout.pyramid_texels, 0, 0};
-    memcpy(out->offsets, plan->layout.offsets, sizeof out->offsets);
+    for (uint32_t i = 1; i <= plan->layout.top; i++)
+        out->pyramid[i] = (ss_uvec4){plan->layout.offsets[i], softshi_level_size(plan->extent.width, i), 0, 0};
 }
 
 static void write_map_descriptor(const softsh_context *context, VkDescriptorSet set, const softsh_map *map)

@@ -13,7 +13,7 @@ static softshi_range append(VkDeviceSize *end, VkDeviceSize size)
     return range;
 }
 
-static uint32_t level_size(uint32_t texels, uint32_t level)
+uint32_t softshi_level_size(uint32_t texels, uint32_t level)
 {
     return (uint32_t)(((uint64_t)texels + (UINT64_C(1) << level) - 1) >> level);
 }
@@ -32,16 +32,18 @@ void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_
 {
     memset(out, 0, sizeof *out);
     const uint32_t side = maximum(extent.width, extent.height);
-    while (level_size(side, out->top) > 1)
+    /* Even a single texel has a level 1: queries never read level 0. */
+    do
         out->top++;
+    while (softshi_level_size(side, out->top) > 1);
     for (uint32_t i = 1; i <= out->top; i++) {
         out->offsets[i] = out->pyramid_texels;
-        out->pyramid_texels += level_size(extent.width, i) * level_size(extent.height, i);
+        out->pyramid_texels += softshi_level_size(extent.width, i) * softshi_level_size(extent.height, i);
     }
     out->join = out->top;
     if (join_texels > 0) {
         out->join = 0;
-        while (level_size(side, out->join) > join_texels)
+        while (softshi_level_size(side, out->join) > join_texels)
             out->join++;
         /* Not the size at `join`: a smaller map built into the same memory may join at a finer level. */
         out->wide_extent = (VkExtent2D){minimum(extent.width, join_texels), minimum(extent.height, join_texels)};
@@ -57,12 +59,12 @@ void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_
 
 void softshi_layout_view(VkExtent2D extent, bool filter, softshi_view_layout *out)
 {
-    const VkDeviceSize tiles = (VkDeviceSize)level_size(extent.width, 3) * level_size(extent.height, 3);
+    const VkDeviceSize tiles = (VkDeviceSize)((extent.width + SS_TILE_X - 1) / SS_TILE_X) *
+                               ((extent.height + SS_TILE_Y - 1) / SS_TILE_Y);
     VkDeviceSize end = 0;
     out->frame = append(&end, sizeof(ss_frame));
     out->control = append(&end, sizeof(ss_control));
-    /* State, undecided list, and three words per penumbra tile. */
-    out->tiles = append(&end, tiles * 5 * sizeof(uint32_t));
+    out->tiles = append(&end, tiles * SS_TILE_WORDS * sizeof(uint32_t));
     out->filter = append(&end, filter ? (VkDeviceSize)extent.width * extent.height * 3 * sizeof(float) : 4);
     out->buffer_size = end;
 }

@@ -9,6 +9,9 @@ typedef struct softshi_range {
     VkDeviceSize offset, size; /* bytes */
 } softshi_range;
 
+/* Texels of a side at a pyramid level: rounded up. */
+uint32_t softshi_level_size(uint32_t texels, uint32_t level);
+
 /* One light's structures for maps of `extent`. */
 typedef struct softshi_occluder_layout {
     softshi_range header, fan_depth, pyramid; /* in the buffer */

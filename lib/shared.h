@@ -10,8 +10,8 @@
 
 static_assert(offsetof(ss_occluders, depths) == 48, "std430");
 static_assert(offsetof(ss_occluders, size) == 80, "std430");
-static_assert(offsetof(ss_occluders, offsets) == 128, "std430");
-static_assert(sizeof(ss_occluders) == 256, "std430");
+static_assert(offsetof(ss_occluders, pyramid) == 256, "std430");
+static_assert(sizeof(ss_occluders) == 512, "std430");
 static_assert(sizeof(ss_plan) == 16 * SS_MAX_LEVELS + 16, "std430");
 static_assert(offsetof(ss_frame, camera) == 128, "std430");
 static_assert(offsetof(ss_frame, area) == 160, "std430");

@@ -131,7 +131,7 @@ void softsh_view_destroy(softsh_view *v)
     softshi_view_pipelines *p = &v->pipelines;
     softshi_pipeline *const all[] = {&p->classify_tiles[0], &p->classify_tiles[1], &p->classify_pixels[0],
                                      &p->classify_pixels[1], &p->evaluate[0],      &p->evaluate[1],
-                                     &p->hard,              &p->filter};
+                                     &p->classify_columns,  &p->hard,              &p->filter};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         softshi_pipeline_destroy(context, all[i]);
     if (v->pool)

@@ -11,7 +11,7 @@
 /* Passes that query the hierarchy come in two kinds: for occluders without and with wide levels. */
 typedef struct softshi_view_pipelines {
     softshi_pipeline classify_tiles[2], classify_pixels[2], evaluate[2];
-    softshi_pipeline hard, filter;
+    softshi_pipeline classify_columns, hard, filter;
 } softshi_view_pipelines;
 
 struct softsh_view {

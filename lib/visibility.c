@@ -61,8 +61,8 @@ static void fill_frame(const softsh_view *v, const softsh_visibility_info *info,
     frame->camera.z = 2.0f / (float)area.extent.height;
     frame->bias.x = (float)info->bias;
     frame->area = (ss_ivec4){area.offset.x, area.offset.y, (int32_t)area.extent.width, (int32_t)area.extent.height};
-    frame->tiles.x = (area.extent.width + SS_TILE - 1) / SS_TILE;
-    frame->tiles.y = (area.extent.height + SS_TILE - 1) / SS_TILE;
+    frame->tiles.x = (area.extent.width + SS_TILE_X - 1) / SS_TILE_X;
+    frame->tiles.y = (area.extent.height + SS_TILE_Y - 1) / SS_TILE_Y;
     frame->tiles.z = frame->tiles.x * frame->tiles.y;
     frame->tiles.w = info->override_bias ? SS_FLAG_OVERRIDE_BIAS : 0u;
     frame->quality.x = v->settings.budget;

@@ -171,7 +171,6 @@ std::string to_json(const Row &row)
     add_optional(counts, "primitives_per_active", per_active(row, &softsh_stats::primitives));
     add_optional(counts, "tiles", count(row, &softsh_stats::tiles));
     add_optional(counts, "undecided_tiles", count(row, &softsh_stats::undecided_tiles));
-    add_optional(counts, "penumbra_tiles", count(row, &softsh_stats::penumbra_tiles));
     add_optional(counts, "clamped", count(row, &softsh_stats::clamped));
     std::optional<double> built, skipped;
     if (row.stats) {

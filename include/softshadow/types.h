@@ -204,7 +204,6 @@ typedef struct softsh_stats {
     uint64_t primitives; /* micro-occluders projected */
     uint64_t tiles;           /* 8 x 8 pixel tiles in the render area */
     uint64_t undecided_tiles; /* needed a look at their pixels */
-    uint64_t penumbra_tiles;  /* needed an evaluation */
     uint64_t clamped;    /* active pixels whose level the budget coarsened */
     uint32_t wide_levels_built;   /* MSSM levels of the occluders' last build */
     uint32_t wide_levels_skipped; /* MSSM levels that no kernel of this light and map can ask for */

@@ -4,18 +4,30 @@
 
 softsh_result softshi_classify_create(softsh_view *view, int wide, const softshi_specialization *constants)
 {
-    const softsh_result result = softshi_pipeline_create(view->context, SOFTSHI_SHADER_CLASSIFY_TILES, constants,
-                                                         &view->pipelines.classify_tiles[wide]);
-    if (result != SOFTSH_SUCCESS)
-        return result;
-    return softshi_pipeline_create(view->context, SOFTSHI_SHADER_CLASSIFY_PIXELS, constants,
-                                   &view->pipelines.classify_pixels[wide]);
+    softsh_result result = SOFTSH_SUCCESS;
+    if (wide == 0)
+        result = softshi_pipeline_create(view->context, SOFTSHI_SHADER_CLASSIFY_COLUMNS, constants,
+                                         &view->pipelines.classify_columns);
+    if (result == SOFTSH_SUCCESS)
+        result = softshi_pipeline_create(view->context, SOFTSHI_SHADER_CLASSIFY_TILES, constants,
+                                         &view->pipelines.classify_tiles[wide]);
+    if (result == SOFTSH_SUCCESS)
+        result = softshi_pipeline_create(view->context, SOFTSHI_SHADER_CLASSIFY_PIXELS, constants,
+                                         &view->pipelines.classify_pixels[wide]);
+    return result;
 }
 
 void softshi_classify_record(const softshi_visibility *visibility)
 {
     const softsh_view *view = visibility->view;
     const int wide = visibility->occluders->wide;
+    const softshi_pass columns = {
+        .pipeline = &view->pipelines.classify_columns,
+        .reads = SOFTSHI_HEADER | SOFTSHI_FRAME,
+        .writes = SOFTSHI_TILES | SOFTSHI_VISIBILITY,
+        .groups = {(visibility->frame.tiles.x * SS_TILE_X + 63) / 64, visibility->frame.tiles.y, 1},
+    };
+    softshi_record_pass(visibility->recorder, &columns);
     const softshi_pass tiles = {
         .pipeline = &view->pipelines.classify_tiles[wide],
         .reads = SOFTSHI_HIERARCHY | SOFTSHI_FRAME,

@@ -63,8 +63,8 @@ void softshi_hierarchy_record_levels(softshi_recorder *recorder, const softsh_oc
         for (uint32_t layer = 0; layer < layers; layer++) {
             const ss_level_push push = {.level = level, .layer = layer};
             softshi_pass pass = cover(level == 1 ? &o->pipelines.reduce_first : &o->pipelines.reduce,
-                                      (uint32_t)(((uint64_t)extent.width + (1u << level) - 1) >> level),
-                                      (uint32_t)(((uint64_t)extent.height + (1u << level) - 1) >> level));
+                                      softshi_level_size(extent.width, level),
+                                      softshi_level_size(extent.height, level));
             pass.reads = SOFTSHI_HEADER | SOFTSHI_FAN_DEPTH;
             pass.writes = layer == 0 ? SOFTSHI_PYRAMID : 0;
             pass.push = &push;

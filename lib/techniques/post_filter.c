@@ -19,7 +19,7 @@ void softshi_post_filter_record(const softshi_visibility *visibility)
             .push = &push,
             .push_size = sizeof push,
             .indirect = view->block.buffer,
-            .indirect_offset = view->layout.control.offset + offsetof(ss_control, evaluate_args),
+            .indirect_offset = view->layout.control.offset + offsetof(ss_control, pixels_args),
         };
         softshi_record_pass(visibility->recorder, &pass);
     }

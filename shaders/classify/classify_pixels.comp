@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
-// The pixels of undecided tiles, one group per tile: lit and umbra pixels are written, the others are marked active and their
-// tile goes on the penumbra list.
+// The pixels of undecided tiles, one group per tile: lit and umbra pixels are written, the others go on the active list, in
+// any order: no result depends on it.
 #include "ss_types.h"
 #include "ss_specialization.glsl"
 #include "ss_occluder_bindings.glsl"
@@ -12,56 +12,43 @@
 #include "ss_range.glsl"
 #include "ss_kernel.glsl"
 
-layout(local_size_x = SS_TILE, local_size_y = SS_TILE) in;
+layout(local_size_x = SS_TILE_X, local_size_y = SS_TILE_Y) in;
 
-shared uint active_pixels[2];
+void append_active_pixel(uint id, float g_hi)
+{
+    const uint i = atomicAdd(control.evaluate_args.w, 1u);
+    // The first pixel of each group of the next pass makes the dispatch large enough for it.
+    if (i % SS_EVALUATE_GROUP == 0u) {
+        const uint group = i / SS_EVALUATE_GROUP;
+        atomicMax(control.evaluate_args.x, min(group + 1u, SS_DISPATCH_WIDTH));
+        atomicMax(control.evaluate_args.y, group / SS_DISPATCH_WIDTH + 1u);
+    }
+    tiles[ss_active_slot(i)] = id;
+    tiles[ss_active_slot(i) + 1u] = floatBitsToUint(g_hi);
+}
 
 void main()
 {
     const uint index = gl_WorkGroupID.y * SS_DISPATCH_WIDTH + gl_WorkGroupID.x;
-    const bool exists = index < control.pixels_args.w; // the same for the whole group
-    const uint lane = gl_LocalInvocationIndex;
-    if (lane < 2u)
-        active_pixels[lane] = 0u;
-    barrier();
-
-    const uint tile = exists ? tiles[ss_undecided_slot(index)] : 0u;
+    if (index >= control.pixels_args.w)
+        return;
+    const uint tile = tiles[ss_undecided_slot(index)], lane = gl_LocalInvocationIndex;
     const ivec2 pixel = ss_tile_pixel(tile, lane);
-    const bool inside = exists && all(lessThan(pixel, frame.area.zw));
-    const ss_receiver r = ss_load_receiver(min(pixel, frame.area.zw - 1));
-    uint state = SS_STATE_LIT, nodes = 0u;
-    if (inside && r.valid && r.away)
-        state = SS_STATE_UMBRA;
-    else if (inside && r.valid) {
-        const ss_kernel k = ss_find_kernel(r);
-        state = k.state;
-        nodes = k.nodes;
-    }
-    if (inside && state == SS_STATE_PIXELS)
-        atomicOr(active_pixels[lane >> 5], 1u << (lane & 31u));
-    if (inside && state != SS_STATE_PIXELS) {
+    if (any(greaterThanEqual(pixel, frame.area.zw)))
+        return;
+    const ss_receiver r = ss_load_receiver(pixel);
+    const ss_kernel k = ss_find_kernel(r, uintBitsToFloat(tiles[ss_undecided_slot(index) + 1u]));
+    const uint state = !r.valid ? SS_STATE_LIT : r.away ? SS_STATE_UMBRA : k.state;
+    if (state == SS_STATE_PIXELS)
+        append_active_pixel(tile * SS_TILE_PIXELS + lane, k.g_hi);
+    if (state == SS_STATE_UMBRA)
+        ss_write_visibility(pixel, 0.0);
+    if (SS_FILTER) {
         const float dark = state == SS_STATE_UMBRA ? 1.0 : 0.0;
-        ss_write_visibility(pixel, 1.0 - dark);
-        if (SS_FILTER)
-            ss_store_filter_values(pixel, dark, dark);
+        ss_store_filter_values(pixel, dark, dark);
     }
-    barrier();
-
-    if (exists && lane == 0u && (active_pixels[0] | active_pixels[1]) != 0u) {
-        const uint i = atomicAdd(control.evaluate_args.w, 1u), slot = ss_penumbra_slot(i);
-        atomicMax(control.evaluate_args.x, min(i + 1u, SS_DISPATCH_WIDTH));
-        atomicMax(control.evaluate_args.y, i / SS_DISPATCH_WIDTH + 1u);
-        tiles[slot] = tile;
-        tiles[slot + 1u] = active_pixels[0];
-        tiles[slot + 2u] = active_pixels[1];
-        if (SS_STATS) {
-            ss_count(SS_STAT_ACTIVE, uint(bitCount(active_pixels[0]) + bitCount(active_pixels[1])));
-            ss_count(SS_STAT_PENUMBRA, 1u);
-        }
-    }
-    if (SS_STATS && inside) {
-        ss_count(SS_STAT_NODES, nodes);
-        if (state != SS_STATE_PIXELS)
-            ss_count(state == SS_STATE_UMBRA ? SS_STAT_UMBRA : SS_STAT_LIT, 1u);
+    if (SS_STATS) {
+        ss_count(SS_STAT_NODES, k.nodes);
+        ss_count(state == SS_STATE_PIXELS ? SS_STAT_ACTIVE : state == SS_STATE_UMBRA ? SS_STAT_UMBRA : SS_STAT_LIT, 1u);
     }
 }

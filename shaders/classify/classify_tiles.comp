@@ -1,9 +1,9 @@
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
-// One lane per tile of 8 x 8 pixels: reads the depth once, bounds the tile's receivers by a plane and a thickness, and asks
-// the hierarchy whether all of them are lit or all in umbra. Such tiles are written here and never seen again; the others
-// go to classify_pixels.
+// One lane per tile of 8 x 8 pixels: bounds the tile's receivers by a plane and a thickness, and asks the hierarchy whether all
+// of them are lit or all in umbra. Lit tiles are done already, umbra tiles are written here; neither is seen again. The others
+// go to classify_pixels with the nearest occluder there can be.
 #include "ss_types.h"
 #include "ss_specialization.glsl"
 #include "ss_occluder_bindings.glsl"
@@ -14,21 +14,59 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-const int MAX_PLANE_SIDE = 32; // texels
+// Above a box of so many texels a side a tile is not looked at cell by cell.
+const int MAX_PLANE_SIDE = 32;
+
+// Receivers of a tile in device depth: first + step x + step y + residual.
+struct tile_depth
+{
+    float first;
+    vec2 step;
+    vec2 residual; // least, most; least > most: no receivers
+};
 
 // The receivers of a tile, in map space.
 struct tile_bounds
 {
     bool usable;
-    vec2 lo, hi;        // box of (u, v)
+    vec2 lo, hi;     // box of (u, v)
     float g_lo, g_hi;
-    vec3 plane;         // g >= plane.x u + plane.y v + plane.z for every receiver
-    float thickness;    // how far receivers rise above that plane
+    vec3 plane;      // g >= plane.x u + plane.y v + plane.z for every receiver
+    float thickness; // how far receivers rise above that plane
     float eta;
 };
 
+vec4 load_column(uint tile, uint column)
+{
+    const uint slot = ss_column_slot(tile, column);
+    return uintBitsToFloat(uvec4(tiles[slot], tiles[slot + 1u], tiles[slot + 2u], tiles[slot + 3u]));
+}
+
+// Device depth is affine in the pixel on any plane, so the residuals measure how far the tile is from being one.
+tile_depth combine_columns(uint tile)
+{
+    vec4 columns[SS_TILE_X];
+    for (uint i = 0u; i < SS_TILE_X; i++)
+        columns[i] = load_column(tile, i);
+    const vec4 left = columns[0], right = columns[SS_TILE_X - 1];
+    const vec2 last = vec2(SS_TILE_X - 1, SS_TILE_Y - 1);
+    tile_depth d;
+    d.first = left.x;
+    d.step = vec2(right.x - left.x, left.y - left.x) / last;
+    d.residual = vec2(3e38, -3e38);
+    for (uint i = 0u; i < SS_TILE_X; i++) {
+        const vec4 column = columns[i];
+        // Between its ends a column's line leaves the plane by no more than at one of them.
+        const vec2 off = column.xy - (d.first + d.step.x * float(i) + vec2(0.0, d.step.y * last.y));
+        const bool any_receiver = column.z <= column.w;
+        d.residual.x = any_receiver ? min(d.residual.x, min(off.x, off.y) + column.z) : d.residual.x;
+        d.residual.y = any_receiver ? max(d.residual.y, max(off.x, off.y) + column.w) : d.residual.y;
+    }
+    return d;
+}
+
 // Convex hull of the pixels' plane, thickened by the residuals: a projective map keeps it convex.
-tile_bounds bound(ivec2 corner, ivec2 last, vec3 depth_plane, vec2 residual)
+tile_bounds bound(ivec2 corner, tile_depth d)
 {
     tile_bounds t;
     t.usable = true;
@@ -36,22 +74,21 @@ tile_bounds bound(ivec2 corner, ivec2 last, vec3 depth_plane, vec2 residual)
     t.hi = vec2(-3e38);
     t.g_lo = 3e38;
     t.g_hi = -3e38;
-    t.eta = 0.0;
+    const mat4 to_map = mat4(frame.to_map[0], frame.to_map[1], frame.to_map[2], frame.to_map[3]);
     vec3 p[8];
+    vec4 h;
     for (int i = 0; i < 8; i++) {
-        const ivec2 at = ivec2((i & 1) == 0 ? 0 : last.x, (i & 2) == 0 ? 0 : last.y);
-        const float depth = depth_plane.z + dot(depth_plane.xy, vec2(at)) + ((i & 4) == 0 ? residual.x : residual.y);
-        const vec4 ndc = vec4((vec2(corner + at) + 0.5) * frame.camera.yz - 1.0, depth, 1.0);
-        const vec4 h = vec4(dot(frame.to_map[0], ndc), dot(frame.to_map[1], ndc), dot(frame.to_map[2], ndc),
-                            dot(frame.to_map[3], ndc));
+        const vec2 at = vec2((i & 1) == 0 ? 0 : SS_TILE_X - 1, (i & 2) == 0 ? 0 : SS_TILE_Y - 1);
+        const float depth = d.first + dot(d.step, at) + ((i & 4) == 0 ? d.residual.x : d.residual.y);
+        h = vec4((vec2(corner) + at + 0.5) * frame.camera.yz - 1.0, depth, 1.0) * to_map;
         t.usable = t.usable && ss_is_in_front(h);
         p[i] = h.xyz / h.w;
         t.lo = min(t.lo, p[i].xy);
         t.hi = max(t.hi, p[i].xy);
         t.g_lo = min(t.g_lo, p[i].z);
         t.g_hi = max(t.g_hi, p[i].z);
-        t.eta = max(t.eta, ss_eta(h, vec2(0.0)));
     }
+    t.eta = ss_eta(h, vec2(0.0));
     const vec3 e = p[1] - p[0], f = p[2] - p[0];
     const float det = e.x * f.y - e.y * f.x;
     vec2 gradient = vec2(e.z * f.y - f.z * e.y, f.z * e.x - e.z * f.x) / det;
@@ -60,8 +97,9 @@ tile_bounds bound(ivec2 corner, ivec2 last, vec3 depth_plane, vec2 residual)
     gradient = ss_clamp_gradient(gradient, t.g_hi);
     float base = 3e38, top = -3e38;
     for (int i = 0; i < 8; i++) {
-        base = min(base, p[i].z - dot(gradient, p[i].xy));
-        top = max(top, p[i].z - dot(gradient, p[i].xy));
+        const float rest = p[i].z - dot(gradient, p[i].xy);
+        base = min(base, rest);
+        top = max(top, rest);
     }
     t.plane = vec3(gradient, base);
     t.thickness = top - base;
@@ -74,59 +112,63 @@ tile_bounds bound(ivec2 corner, ivec2 last, vec3 depth_plane, vec2 residual)
 bool lies_under_plane(tile_bounds t, uint layer, ivec2 lo, ivec2 hi)
 {
     const int side = max(hi.x - lo.x, hi.y - lo.y) + 1;
-    const uint level = min(side <= 8 ? 0u : side <= 16 ? 1u : 2u, occ.levels.x);
-    const ivec2 a = lo >> int(level), b = hi >> int(level);
-    const float cell = float(1u << level), footprint = 0.5 * cell * (abs(t.plane.x) + abs(t.plane.y)) + t.eta;
-    bool under = side <= MAX_PLANE_SIDE && t.thickness <= abs(t.plane.x) + abs(t.plane.y) + 4.0 * t.eta;
-    if (!under)
-        return false;
-    for (int y = a.y; y <= b.y; y++) {
+    const float slope = abs(t.plane.x) + abs(t.plane.y) + ss_slack(t.g_hi);
+    const bool planar = t.thickness <= 2.0 * slope + 4.0 * t.eta;
+    const int level = min(2, int(occ.levels.x));
+    const ivec2 a = lo >> level, b = side <= MAX_PLANE_SIDE && planar ? hi >> level : a - 1;
+    const float cell = float(1 << level), footprint = 0.5 * cell * slope + t.eta;
+    const int row = int(occ.pyramid[level].y);
+    const uint base = layer * occ.strides.y + ss_level_offset(uint(level));
+    bool under = side <= MAX_PLANE_SIDE && planar;
+    for (int y = a.y; y <= b.y && under; y++) {
         for (int x = a.x; x <= b.x; x++) {
-            const vec2 at = (vec2(x, y) + 0.5) * cell;
-            const float g = level == 0u ? ss_load_fan_depth(layer, ivec2(x, y)) : ss_load_pyramid(layer, level, ivec2(x, y)).y;
-            under = under && g <= dot(t.plane.xy, at) + t.plane.z + footprint;
+            const float g = pyramid[base + uint(y * row + x)].y;
+            under = under && g <= dot(t.plane.xy, (vec2(x, y) + 0.5) * cell) + t.plane.z + footprint;
         }
     }
     return under;
 }
 
-uint classify(tile_bounds t, inout uint nodes)
+// The tile's state; g_hi comes back as the nearest occluder its receivers can have.
+uint classify(tile_bounds t, inout float g_hi, inout uint nodes)
 {
     const vec2 limit = vec2(occ.size.xy);
-    if (!t.usable)
+    const float den = occ.light.w - occ.light.z * t.g_hi;
+    if (!t.usable || !(den > 0.0) || !SS_HIERARCHY)
         return SS_STATE_PIXELS;
     if (any(lessThan(t.hi, vec2(0.0))) || any(greaterThan(t.lo, limit)))
         return SS_STATE_LIT;
-    const float den = occ.light.w - occ.light.z * t.g_hi;
-    if (!(den > 0.0) || !SS_HIERARCHY)
-        return SS_STATE_PIXELS;
-    const vec2 slope = abs(t.plane.xy);
     const bool biased = (frame.tiles.w & SS_FLAG_OVERRIDE_BIAS) != 0u;
-    float g_hi = -3e38;
-    for (uint layer = 0u; layer < occ.size.z; layer++)
-        g_hi = max(g_hi, ss_root(layer).y);
-    ss_samples s;
-    for (int i = 0; i < SS_MAX_REFINEMENTS; i++) {
-        s = ss_kernel_samples(ss_kernel_box(t.lo, t.hi, t.g_lo, den, g_hi));
+    uint state = SS_STATE_PIXELS;
+    for (int i = 0; i < SS_MAX_REFINEMENTS && state == SS_STATE_PIXELS; i++) {
+        const ss_samples s = ss_kernel_samples(ss_kernel_box(t.lo, t.hi, t.g_lo, den, g_hi));
         vec2 range = vec2(-3e38);
         for (uint layer = 0u; layer < occ.size.z; layer++)
-            range = max(range, ss_range(layer, s.texel_lo, s.texel_hi));
+            range = max(range, ss_range_pyramid(layer, s.texel_lo, s.texel_hi));
         nodes += 4u * occ.size.z;
+        const float rise = dot(abs(t.plane.xy), vec2(s.texel_hi - s.texel_lo + 1)) + t.eta;
         if (!(range.y > t.g_lo + (biased ? 0.0 : t.eta)))
-            return SS_STATE_LIT;
-        const float rise = dot(slope, vec2(s.texel_hi - s.texel_lo + 1)) + t.eta;
-        if (s.covered && all(greaterThanEqual(t.lo, vec2(0.0))) && all(lessThanEqual(t.hi, limit)) &&
-            range.x > t.g_hi + rise && occ.light.z * range.y < occ.light.w && !biased)
-            return SS_STATE_UMBRA;
+            state = SS_STATE_LIT;
+        else if (s.covered && all(greaterThanEqual(t.lo, vec2(0.0))) && all(lessThanEqual(t.hi, limit)) &&
+                 range.x > t.g_hi + rise && occ.light.z * range.y < occ.light.w && !biased)
+            state = SS_STATE_UMBRA;
         g_hi = min(g_hi, range.y);
     }
-    if (biased)
-        return SS_STATE_PIXELS;
-    s = ss_kernel_samples(ss_kernel_box(t.lo, t.hi, t.g_lo, den, g_hi));
+    if (state != SS_STATE_PIXELS || biased)
+        return state;
+    const ss_samples s = ss_kernel_samples(ss_kernel_box(t.lo, t.hi, t.g_lo, den, g_hi));
     bool under = true;
     for (uint layer = 0u; layer < occ.size.z; layer++)
         under = under && lies_under_plane(t, layer, s.texel_lo, s.texel_hi);
     return under ? SS_STATE_LIT : SS_STATE_PIXELS;
+}
+
+void write_umbra(ivec2 corner, ivec2 last)
+{
+    for (int y = 0; y <= last.y; y++)
+        for (int x = 0; x <= last.x; x++)
+            if (ss_is_receiver(ss_load_depth(corner + ivec2(x, y))))
+                ss_write_visibility(corner + ivec2(x, y), 0.0);
 }
 
 void main()
@@ -134,61 +176,37 @@ void main()
     if (any(greaterThanEqual(gl_GlobalInvocationID.xy, frame.tiles.xy)))
         return;
     const uint tile = gl_GlobalInvocationID.y * frame.tiles.x + gl_GlobalInvocationID.x;
-    const ivec2 corner = ivec2(gl_GlobalInvocationID.xy) * SS_TILE;
-    const ivec2 last = min(corner + SS_TILE, frame.area.zw) - 1 - corner;
+    const ivec2 corner = ivec2(gl_GlobalInvocationID.xy) * ivec2(SS_TILE_X, SS_TILE_Y);
+    const ivec2 last = min(corner + ivec2(SS_TILE_X, SS_TILE_Y), frame.area.zw) - 1 - corner;
 
-    // Device depth is affine in the pixel on any plane, so the residuals measure how far the tile is from being one.
-    const float d00 = ss_load_depth(corner);
-    vec3 depth_plane = vec3(last.x > 0 ? (ss_load_depth(corner + ivec2(last.x, 0)) - d00) / float(last.x) : 0.0,
-                            last.y > 0 ? (ss_load_depth(corner + ivec2(0, last.y)) - d00) / float(last.y) : 0.0, d00);
-    depth_plane = vec3(abs(depth_plane.x) < 1.0 ? depth_plane.x : 0.0, abs(depth_plane.y) < 1.0 ? depth_plane.y : 0.0,
-                       abs(d00) <= 1.0 ? d00 : 0.0);
-    vec2 residual = vec2(3e38, -3e38);
-    uvec2 receivers = uvec2(0u);
-    const bool reversed = frame.quality.w != 0u;
-    for (int y = 0; y <= last.y; y++) {
-        for (int x = 0; x <= last.x; x++) {
-            const ivec2 at = ivec2(x, y);
-            const float depth = texelFetch(camera_depth, frame.area.xy + corner + at, 0).x;
-            // Lit until a later pass says otherwise: most tiles are never seen again.
-            ss_write_visibility(corner + at, 1.0);
-            const bool is_receiver = reversed ? depth > 0.0 : depth < 1.0;
-            const float r = clamp(depth, 0.0, 1.0) - (depth_plane.z + dot(depth_plane.xy, vec2(at)));
-            residual = is_receiver ? vec2(min(residual.x, r), max(residual.y, r)) : residual;
-        }
-    }
-
+    const tile_depth d = combine_columns(tile);
+    const bool empty = d.residual.x > d.residual.y;
     uint nodes = 0u;
-    uint state = SS_STATE_LIT;
-    if (residual.x <= residual.y)
-        state = classify(bound(corner, last, depth_plane, residual), nodes);
+    float g_hi = ss_nearest();
+    uint state = classify(bound(corner, d), g_hi, nodes);
     // Normals can make single pixels face away, which only classify_pixels looks at.
-    if (SS_NORMALS && state == SS_STATE_LIT && residual.x <= residual.y)
+    if (SS_NORMALS && state == SS_STATE_LIT)
         state = SS_STATE_PIXELS;
+    if (empty)
+        state = SS_STATE_LIT;
     tiles[tile] = state;
     if (state == SS_STATE_PIXELS) {
         const uint i = atomicAdd(control.pixels_args.w, 1u);
         atomicMax(control.pixels_args.x, min(i + 1u, SS_DISPATCH_WIDTH));
         atomicMax(control.pixels_args.y, i / SS_DISPATCH_WIDTH + 1u);
         tiles[ss_undecided_slot(i)] = tile;
-    } else if (state == SS_STATE_UMBRA) {
-        const uvec2 dark = state == SS_STATE_UMBRA ? receivers : uvec2(0u);
-        for (int y = 0; y <= last.y; y++)
-            for (int x = 0; x <= last.x; x++)
-                ss_write_visibility(corner + ivec2(x, y), 1.0 - float((dark[y >> 2] >> ((y & 3) * SS_TILE + x)) & 1u));
+        tiles[ss_undecided_slot(i) + 1u] = floatBitsToUint(g_hi);
     }
+    if (state == SS_STATE_UMBRA)
+        write_umbra(corner, last);
     if (SS_STATS) {
-        const uint pixels = uint((last.x + 1) * (last.y + 1)), dark = uint(bitCount(receivers.x) + bitCount(receivers.y));
+        const uint pixels = uint((last.x + 1) * (last.y + 1));
         ss_count(SS_STAT_PIXELS, pixels);
         ss_count(SS_STAT_TILES, 1u);
         ss_count(SS_STAT_NODES, nodes);
-        if (state == SS_STATE_LIT)
-            ss_count(SS_STAT_LIT, pixels);
-        if (state == SS_STATE_UMBRA) {
-            ss_count(SS_STAT_UMBRA, dark);
-            ss_count(SS_STAT_LIT, pixels - dark);
-        }
         if (state == SS_STATE_PIXELS)
             ss_count(SS_STAT_UNDECIDED, 1u);
+        else
+            ss_count(state == SS_STATE_UMBRA ? SS_STAT_UMBRA : SS_STAT_LIT, pixels);
     }
 }

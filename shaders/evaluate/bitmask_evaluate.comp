@@ -1,9 +1,8 @@
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
-// Bitmask Soft Shadows (Schwarz and Stamminger 2007) and area accumulation, for the active pixels of penumbra tiles: every
-// micro-occluder of the kernel is back-projected onto the light. One group per tile; lane i takes the tile's i-th active
-// pixel, so that idle lanes are at the end.
+// Bitmask Soft Shadows (Schwarz and Stamminger 2007) and area accumulation, for the active pixels: every
+// micro-occluder of the kernel is back-projected onto the light. One lane per pixel of the active list.
 #include "ss_types.h"
 #include "ss_specialization.glsl"
 #include "ss_occluder_bindings.glsl"
@@ -15,7 +14,7 @@
 #include "ss_pattern.glsl"
 #include "ss_primitive.glsl"
 
-layout(local_size_x = SS_TILE, local_size_y = SS_TILE) in;
+layout(local_size_x = SS_EVALUATE_GROUP) in;
 
 struct back_projection
 {
@@ -43,19 +42,25 @@ vec2 back_project(back_projection b, vec2 uv, float g)
     return b.matrix * ((uv - b.uv) * (b.den / (g - b.g))) + b.constant;
 }
 
+// The texel whose depth a coarse texel takes; level 0 is its own.
+ivec2 sampled_texel(ivec2 at, uint level)
+{
+    return (at << int(level)) + ((1 << int(level)) >> 1);
+}
+
 vec2 sample_place(ivec2 at, uint level)
 {
-    if (SS_SAMPLED && level > 0u)
-        return vec2(min((at << int(level)) + (1 << int(level - 1u)), ivec2(occ.size.xy) - 1)) + 0.5;
+    if (SS_SAMPLED)
+        return vec2(min(sampled_texel(at, level), ivec2(occ.size.xy) - 1)) + 0.5;
     return (vec2(at) + 0.5) * float(1u << level);
 }
 
 float sample_depth(uint layer, ivec2 at, uint level)
 {
+    if (SS_SAMPLED)
+        return ss_load_fan_depth(layer, sampled_texel(at, level));
     if (level == 0u)
         return ss_load_fan_depth(layer, at);
-    if (SS_SAMPLED)
-        return ss_load_fan_depth(layer, (at << int(level)) + (1 << int(level - 1u)));
     return ss_load_pyramid(layer, level, at).y;
 }
 
@@ -96,66 +101,67 @@ void add_quads(uint layer, ss_samples s, back_projection b, ss_receiver r, float
     }
 }
 
+struct micropatch
+{
+    vec2 lo, hi; // sample coordinates; hi >= lo, for the light's axes run along the map's
+    bool occludes;
+};
+
+micropatch load_patch(uint layer, ivec2 at, uint level, back_projection b, ss_receiver r, float band)
+{
+    const float g = sample_depth(layer, at, level);
+    const vec2 place = sample_place(at, level);
+    const vec2 scale = vec2(b.matrix[0].x, b.matrix[1].y) * (b.den / (g - b.g));
+    const vec2 middle = scale * (place - b.uv) + b.constant, half_size = scale * (0.5 * float(1u << level));
+    return micropatch(middle - half_size, middle + half_size, occludes(g, place, b, r, band));
+}
+
 void add_patches(uint layer, ss_samples s, back_projection b, ss_receiver r, float band)
 {
-    const float half_size = 0.5 * float(1u << s.level);
+    const bool extended = SS_PRIMITIVE == SS_PRIMITIVE_PATCH_EXTENDED;
     for (int y = s.lo.y; y <= s.hi.y; y++) {
+        // Extension to the left and bottom neighbours closes the gaps between patches of different depth.
+        micropatch left;
+        left.occludes = false;
+        if (extended && s.lo.x > 0)
+            left = load_patch(layer, ivec2(s.lo.x - 1, y), s.level, b, r, band);
         for (int x = s.lo.x; x <= s.hi.x; x++) {
-            const ivec2 at = ivec2(x, y);
-            const float g = sample_depth(layer, at, s.level);
-            const vec2 place = sample_place(at, s.level);
-            if (!occludes(g, place, b, r, band))
-                continue;
-            vec2 lo = back_project(b, place - half_size, g);
-            const vec2 hi = back_project(b, place + half_size, g);
-            if (SS_PRIMITIVE == SS_PRIMITIVE_PATCH_EXTENDED) {
-                const ivec2 left = max(at - ivec2(1, 0), ivec2(0)), below = max(at - ivec2(0, 1), ivec2(0));
-                const float g_left = sample_depth(layer, left, s.level), g_below = sample_depth(layer, below, s.level);
-                const vec2 at_left = sample_place(left, s.level), at_below = sample_place(below, s.level);
-                if (x > 0 && occludes(g_left, at_left, b, r, band))
-                    lo.x = min(lo.x, back_project(b, at_left + half_size, g_left).x);
-                if (y > 0 && occludes(g_below, at_below, b, r, band))
-                    lo.y = min(lo.y, back_project(b, at_below + half_size, g_below).y);
+            const micropatch here = load_patch(layer, ivec2(x, y), s.level, b, r, band);
+            vec2 lo = here.lo;
+            if (extended) {
+                const micropatch below = load_patch(layer, ivec2(x, max(y - 1, 0)), s.level, b, r, band);
+                lo.x = left.occludes ? min(lo.x, left.hi.x) : lo.x;
+                lo.y = below.occludes && y > 0 ? min(lo.y, below.hi.y) : lo.y;
             }
-            ss_add_rectangle(lo, hi);
+            if (here.occludes)
+                ss_add_rectangle(lo, here.hi);
+            left = here;
         }
     }
 }
 
-int nth_bit(uvec2 mask, uint n)
-{
-    const uint low = uint(bitCount(mask.x));
-    uint word = n < low ? mask.x : mask.y;
-    for (uint i = n < low ? n : n - low; i > 0u; i--)
-        word &= word - 1u;
-    return findLSB(word) + (n < low ? 0 : 32);
-}
-
 void main()
 {
-    const uint index = gl_WorkGroupID.y * SS_DISPATCH_WIDTH + gl_WorkGroupID.x;
+    const uint index = (gl_WorkGroupID.y * SS_DISPATCH_WIDTH + gl_WorkGroupID.x) * SS_EVALUATE_GROUP + gl_LocalInvocationIndex;
     if (index >= control.evaluate_args.w)
         return;
-    const uint slot = ss_penumbra_slot(index), tile = tiles[slot];
-    const uvec2 active_mask = uvec2(tiles[slot + 1u], tiles[slot + 2u]);
-    const uint lane = gl_LocalInvocationIndex;
-    if (lane >= uint(bitCount(active_mask.x) + bitCount(active_mask.y)))
-        return;
-    const ivec2 pixel = ss_tile_pixel(tile, uint(nth_bit(active_mask, lane)));
+    const uint id = tiles[ss_active_slot(index)];
+    const float g_hi = uintBitsToFloat(tiles[ss_active_slot(index) + 1u]);
+    const ivec2 pixel = ss_tile_pixel(id / SS_TILE_PIXELS, id % SS_TILE_PIXELS);
 
     const ss_receiver r = ss_load_receiver(pixel);
-    const ss_kernel k = ss_find_kernel(r);
+    const ss_samples samples = ss_receiver_samples(r, g_hi);
     float band;
-    const back_projection b = back_project_from(r, ss_biased(r, k.samples.level, band));
+    const back_projection b = back_project_from(r, ss_biased(r, samples.level, band));
     const bool disc = (occ.size.w & SS_FLAG_DISC) != 0u;
     float mask_occlusion = 0.0, area_occlusion = 0.0;
     ss_mask_clear();
     ss_area = 0.0;
     for (uint layer = 0u; layer < occ.size.z; layer++) {
         if (SS_IS_PATCH)
-            add_patches(layer, k.samples, b, r, band);
+            add_patches(layer, samples, b, r, band);
         else
-            add_quads(layer, k.samples, b, r, band);
+            add_quads(layer, samples, b, r, band);
         if (SS_MERGE_MAXIMUM || layer + 1u == occ.size.z) {
             if (SS_PATTERN_SIDE != 0)
                 mask_occlusion = max(mask_occlusion, ss_mask_occlusion(disc));
@@ -169,9 +175,9 @@ void main()
     if (SS_FILTER)
         ss_store_filter_values(pixel, area_occlusion, occlusion);
     if (SS_STATS) {
-        const ivec2 n = k.samples.hi - k.samples.lo + (SS_IS_PATCH ? 1 : 0);
+        const ivec2 n = samples.hi - samples.lo + (SS_IS_PATCH ? 1 : 0);
         ss_count(SS_STAT_PRIMITIVES, uint(max(n.x, 0) * max(n.y, 0)) * occ.size.z);
-        if (k.samples.clamped)
+        if (samples.clamped)
             ss_count(SS_STAT_CLAMPED, 1u);
     }
 }

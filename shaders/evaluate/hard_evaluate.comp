@@ -9,7 +9,7 @@
 #include "ss_receiver.glsl"
 #include "ss_range.glsl"
 
-layout(local_size_x = SS_TILE, local_size_y = SS_TILE) in;
+layout(local_size_x = SS_TILE_X, local_size_y = SS_TILE_Y) in;
 
 void main()
 {

@@ -2,13 +2,13 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 // One pass of the visibility buffer filter (Schwarz and Stamminger 2007, section 3.1): area occlusion, which varies smoothly
-// though it is often wrong, places each bitmask value between its neighbours. Penumbra tiles only.
+// though it is often wrong, places each bitmask value between its neighbours. Undecided tiles only.
 #include "ss_types.h"
 #include "ss_specialization.glsl"
 #include "ss_io_bindings.glsl"
 #include "ss_filter_values.glsl"
 
-layout(local_size_x = SS_TILE, local_size_y = SS_TILE) in;
+layout(local_size_x = SS_TILE_X, local_size_y = SS_TILE_Y) in;
 
 layout(push_constant) uniform ss_push
 {
@@ -24,7 +24,7 @@ bool load_values(ivec2 pixel, out vec2 values)
     const float depth = texelFetch(camera_depth, frame.area.xy + pixel, 0).x;
     if (!(frame.quality.w != 0u ? depth > 0.0 : depth < 1.0))
         return false;
-    const uint state = tiles[uint(pixel.y / SS_TILE) * frame.tiles.x + uint(pixel.x / SS_TILE)];
+    const uint state = tiles[uint(pixel.y / SS_TILE_Y) * frame.tiles.x + uint(pixel.x / SS_TILE_X)];
     const uint i = ss_filter_index(pixel);
     if (state == SS_STATE_PIXELS)
         values = vec2(filter_values[i], filter_values[(1u + push.source) * ss_filter_plane() + i]);
@@ -49,9 +49,9 @@ float filter_axis(ivec2 pixel, ivec2 axis, vec2 here)
 void main()
 {
     const uint index = gl_WorkGroupID.y * SS_DISPATCH_WIDTH + gl_WorkGroupID.x;
-    if (index >= control.evaluate_args.w)
+    if (index >= control.pixels_args.w)
         return;
-    const ivec2 pixel = ss_tile_pixel(tiles[ss_penumbra_slot(index)], gl_LocalInvocationIndex);
+    const ivec2 pixel = ss_tile_pixel(tiles[ss_undecided_slot(index)], gl_LocalInvocationIndex);
     vec2 here;
     if (any(greaterThanEqual(pixel, frame.area.zw)) || !load_values(pixel, here))
         return;

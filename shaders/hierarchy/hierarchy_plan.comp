@@ -14,10 +14,6 @@ layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_PLAN, std430) writeonly buffer 
 {
     ss_plan plan;
 };
-layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_FAN_DEPTH, std430) readonly buffer ss_fan_depth_buffer
-{
-    float fan_depth[];
-};
 layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_PYRAMID, std430) readonly buffer ss_pyramid_buffer
 {
     vec2 pyramid[];
@@ -28,8 +24,7 @@ void main()
     float nearest = occ.depths.w, farthest = occ.depths.w;
     for (uint layer = 0u; layer < occ.size.z; layer++) {
         const uint top = occ.levels.x;
-        const vec2 range = top == 0u ? vec2(fan_depth[layer * occ.strides.x])
-                                     : pyramid[layer * occ.strides.y + occ.offsets[top >> 2][top & 3u]];
+        const vec2 range = pyramid[layer * occ.strides.y + occ.pyramid[top].x];
         nearest = max(nearest, range.y);
         farthest = min(farthest, range.x);
     }

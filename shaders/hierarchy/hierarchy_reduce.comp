@@ -26,7 +26,7 @@ layout(constant_id = SS_SPEC_COUNT) const bool FROM_FAN_DEPTH = false; // level 
 
 uint level_offset(uint level)
 {
-    return push.layer * occ.strides.y + occ.offsets[level >> 2][level & 3u];
+    return push.layer * occ.strides.y + occ.pyramid[level].x;
 }
 
 void main()

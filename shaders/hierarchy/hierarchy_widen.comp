@@ -22,7 +22,7 @@ vec2 below(ivec2 at, ivec2 size)
     const uint join = occ.levels.y, i = uint(t.y * size.x + t.x);
     if (join == 0u)
         return vec2(fan_depth[push.layer * occ.strides.x + i]);
-    return pyramid[push.layer * occ.strides.y + occ.offsets[join >> 2][join & 3u] + i];
+    return pyramid[push.layer * occ.strides.y + occ.pyramid[join].x + i];
 }
 
 void main()

@@ -13,20 +13,26 @@ layout(set = SS_SET_IO, binding = SS_BIND_CONTROL, std430) buffer ss_control_buf
 {
     ss_control control;
 };
-// Per tile: its state; then the undecided tiles; then three words per penumbra tile: number, active pixels 0-31, 32-63.
 layout(set = SS_SET_IO, binding = SS_BIND_TILES, std430) buffer ss_tiles_buffer
 {
     uint tiles[];
 };
 
+// Where the parts of the tiles buffer begin; SS_TILE_WORDS says what they are.
 uint ss_undecided_slot(uint i)
 {
-    return frame.tiles.z + i;
+    return frame.tiles.z + 2u * i;
 }
 
-uint ss_penumbra_slot(uint i)
+uint ss_active_slot(uint i)
 {
-    return 2u * frame.tiles.z + 3u * i;
+    return 3u * frame.tiles.z + 2u * i;
+}
+
+// Four floats of column `column` of a tile.
+uint ss_column_slot(uint tile, uint column)
+{
+    return 3u * frame.tiles.z + 4u * (tile * SS_TILE_X + column);
 }
 
 void ss_count(uint stat, uint n)
@@ -40,7 +46,8 @@ void ss_count(uint stat, uint n)
 // Pixel (in the render area) of lane `lane` of tile `tile`.
 ivec2 ss_tile_pixel(uint tile, uint lane)
 {
-    return ivec2(tile % frame.tiles.x, tile / frame.tiles.x) * SS_TILE + ivec2(lane % SS_TILE, lane / SS_TILE);
+    return ivec2(tile % frame.tiles.x, tile / frame.tiles.x) * ivec2(SS_TILE_X, SS_TILE_Y) +
+           ivec2(lane % SS_TILE_X, lane / SS_TILE_X);
 }
 
 void ss_write_visibility(ivec2 pixel, float visible)

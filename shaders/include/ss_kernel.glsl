@@ -97,25 +97,38 @@ bool ss_is_off_plane(ss_receiver r, float height, float band)
     return !((r.smooth_surface ? height : abs(height)) <= band);
 }
 
+// The samples of a receiver's kernel for occluders up to g_hi.
+ss_samples ss_receiver_samples(ss_receiver r, float g_hi)
+{
+    return ss_kernel_samples(ss_kernel_box(r.uv, r.uv, r.g, occ.light.w - occ.light.z * r.g, g_hi));
+}
+
 struct ss_kernel
 {
     uint state; // SS_STATE_LIT, SS_STATE_UMBRA, or SS_STATE_PIXELS: to be evaluated
     ss_samples samples;
+    float g_hi; // nearest occluder that matters
     uint nodes;
 };
 
-// Kernel with iterative refinement, and what follows from the depth ranges alone.
-ss_kernel ss_find_kernel(ss_receiver r)
+// Fan depth of the nearest occluder of the map.
+float ss_nearest()
+{
+    float g = -3e38;
+    for (uint layer = 0u; layer < occ.size.z; layer++)
+        g = max(g, ss_root(layer).y);
+    return g;
+}
+
+// Kernel with iterative refinement, and what follows from the depth ranges alone. No occluder that matters to the receiver is
+// nearer than g_hi.
+ss_kernel ss_find_kernel(ss_receiver r, float g_hi)
 {
     ss_kernel k;
     k.nodes = 0u;
     k.state = SS_STATE_PIXELS;
-    float g_hi = -3e38;
-    for (uint layer = 0u; layer < occ.size.z; layer++)
-        g_hi = max(g_hi, ss_root(layer).y);
-    const float den = occ.light.w - occ.light.z * r.g;
     for (int i = 0; i < SS_MAX_REFINEMENTS && k.state == SS_STATE_PIXELS; i++) {
-        k.samples = ss_kernel_samples(ss_kernel_box(r.uv, r.uv, r.g, den, g_hi));
+        k.samples = ss_receiver_samples(r, g_hi);
         if (!SS_HIERARCHY)
             break;
         vec2 range = vec2(-3e38);
@@ -124,20 +137,20 @@ ss_kernel ss_find_kernel(ss_receiver r)
         k.nodes += 4u * occ.size.z;
         float band;
         const float g = ss_biased(r, k.samples.level, band);
-        // Rise of the receiver's plane over the samples.
-        const vec2 reach = max(abs(vec2(k.samples.texel_lo) + 0.5 - r.uv), abs(vec2(k.samples.texel_hi) + 0.5 - r.uv));
+        // Rise of the receiver's plane over the samples, and over what a query of a few texels takes in.
+        const vec2 reach = max(abs(vec2(k.samples.texel_lo & ~1) + 0.5 - r.uv), abs(vec2(k.samples.texel_hi | 1) + 0.5 - r.uv));
         const float rise = dot(abs(r.gradient), reach);
         const ivec2 size = k.samples.texel_hi - k.samples.texel_lo;
         if (!(range.y > g))
             k.state = SS_STATE_LIT;
         else if (k.samples.covered && range.x > (band >= 0.0 ? g + rise + band : g) && occ.light.z * range.y < occ.light.w)
             k.state = SS_STATE_UMBRA;
-        else if (max(size.x, size.y) < 4 && (frame.tiles.w & SS_FLAG_OVERRIDE_BIAS) == 0u && !(range.y > g + rise))
+        else if (max(size.x, size.y) <= 2 && (frame.tiles.w & SS_FLAG_OVERRIDE_BIAS) == 0u &&
+                 !(range.y > g + rise + ss_slack(r.g)))
             k.state = SS_STATE_LIT; // a few texels that all lie under the receiver's own plane
         g_hi = min(g_hi, range.y);
     }
-    if (SS_HIERARCHY && k.state == SS_STATE_PIXELS)
-        k.samples = ss_kernel_samples(ss_kernel_box(r.uv, r.uv, r.g, den, g_hi));
+    k.g_hi = g_hi;
     return k;
 }
 

@@ -58,13 +58,46 @@ void ss_mask_set(int line, uint columns)
     ss_mask[row / SS_ROWS_PER_WORD] |= (columns & ss_line_columns(line)) << ((row % SS_ROWS_PER_WORD) * SS_SIDE);
 }
 
+const int SS_LINES_PER_WORD = SS_LINES / SS_WORDS;
+
+// Bits of a word's first n lines, n less than SS_LINES_PER_WORD.
+uint ss_lines_before(int n)
+{
+    if (!SS_JITTERED)
+        return (1u << (n * SS_SIDE)) - 1u;
+    return n == 0 ? 0u : n == 1 ? 0x00005555u : n == 2 ? 0x0000ffffu : 0x5555ffffu;
+}
+
+// Lines from to to - 1; `columns` has the bits of a whole word of full rows. Every word is updated, in registers: cheaper
+// than finding the few that change in an array that is indexed at run time.
+void ss_mask_set_lines(int from, int to, uint columns)
+{
+    const int first = from / SS_LINES_PER_WORD, last = to / SS_LINES_PER_WORD;
+    const uint skipped = ss_lines_before(from % SS_LINES_PER_WORD), partial = ss_lines_before(to % SS_LINES_PER_WORD);
+    for (int i = 0; i < SS_WORDS; i++) {
+        // All ones below the word a count ends in, that word's own part, nothing above.
+        const uint before_to = uint((i - last) >> 31) | (i == last ? partial : 0u);
+        const uint before_from = uint((i - first) >> 31) | (i == first ? skipped : 0u);
+        ss_mask[i] |= columns & before_to & ~before_from;
+    }
+}
+
+// The bits of a row repeated through a word: `even` and `odd` are those of even and odd rows.
+uint ss_repeat_rows(uint even, uint odd)
+{
+    if (SS_SIDE == 32)
+        return even;
+    if (SS_SIDE == 16)
+        return even | odd << 16;
+    return (even | odd << 8) * 0x00010001u;
+}
+
 // The samples inside the unit disc, for the lines of one mask word.
 uint ss_disc_word(int word)
 {
     uint bits = 0u;
-    const int lines_per_word = SS_LINES / SS_WORDS;
-    for (int i = 0; i < lines_per_word; i++) {
-        const int line = word * lines_per_word + i, row = ss_line_row(line);
+    for (int i = 0; i < SS_LINES_PER_WORD; i++) {
+        const int line = word * SS_LINES_PER_WORD + i, row = ss_line_row(line);
         const float y = ss_line_height(line) * (2.0 / float(SS_SIDE)) - 1.0;
         const float half_width = 0.5 * float(SS_SIDE) * sqrt(max(1.0 - y * y, 0.0)), middle = 0.5 * float(SS_SIDE);
         const uint columns = ss_columns_before(middle + half_width, row) & ~ss_columns_before(middle - half_width, row);

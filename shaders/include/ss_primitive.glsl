@@ -18,19 +18,22 @@ float ss_area_scale()
     return 1.0 / (side * side);
 }
 
+void ss_mask_rectangle(vec2 lo, vec2 hi)
+{
+    const int from = ss_line_from(lo.y), to = ss_line_from(hi.y);
+    const uint even = ss_columns_before(hi.x, 0) & ~ss_columns_before(lo.x, 0);
+    const uint odd = SS_JITTERED ? ss_columns_before(hi.x, 1) & ~ss_columns_before(lo.x, 1) : even;
+    ss_mask_set_lines(from, to, ss_repeat_rows(even, odd));
+}
+
 void ss_add_rectangle(vec2 lo, vec2 hi)
 {
     if (SS_AREA) {
         const vec2 d = ss_clip_area(hi) - ss_clip_area(lo);
         ss_area += d.x * d.y;
     }
-    if (SS_PATTERN_SIDE == 0)
-        return;
-    const int from = ss_line_from(lo.y), to = ss_line_from(hi.y);
-    const uint even = ss_columns_before(hi.x, 0) & ~ss_columns_before(lo.x, 0);
-    const uint odd = SS_JITTERED ? ss_columns_before(hi.x, 1) & ~ss_columns_before(lo.x, 1) : even;
-    for (int line = from; line < to; line++)
-        ss_mask_set(line, (ss_line_row(line) & 1) == 0 ? even : odd);
+    if (SS_PATTERN_SIDE != 0)
+        ss_mask_rectangle(lo, hi);
 }
 
 // Bits left of where an edge crosses a height; none if it does not. Both quads that share an edge compute the same.
@@ -53,10 +56,7 @@ void ss_add_quad(vec2 a, vec2 b, vec2 c, vec2 d)
     if (SS_PRIMITIVE == SS_PRIMITIVE_QUAD_RECTANGLE) {
         // a b are the lower side, d c the upper one.
         const float x0 = 0.5 * (a.x + d.x), x1 = 0.5 * (b.x + c.x), y0 = 0.5 * (a.y + b.y), y1 = 0.5 * (c.y + d.y);
-        const int from = ss_line_from(min(y0, y1)), to = ss_line_from(max(y0, y1));
-        const float lo = min(x0, x1), hi = max(x0, x1);
-        for (int line = from; line < to; line++)
-            ss_mask_set(line, ss_columns_before(hi, ss_line_row(line)) & ~ss_columns_before(lo, ss_line_row(line)));
+        ss_mask_rectangle(vec2(min(x0, x1), min(y0, y1)), vec2(max(x0, x1), max(y0, y1)));
         return;
     }
     const int from = ss_line_from(min(min(a.y, b.y), min(c.y, d.y)));

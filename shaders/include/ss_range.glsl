@@ -6,7 +6,7 @@
 
 uint ss_level_offset(uint level)
 {
-    return occ.offsets[level >> 2][level & 3u];
+    return occ.pyramid[level].x;
 }
 
 ivec2 ss_level_size(uint level)
@@ -29,8 +29,6 @@ vec2 ss_load_pyramid(uint layer, uint level, ivec2 texel)
 
 vec2 ss_root(uint layer)
 {
-    if (occ.levels.x == 0u)
-        return vec2(fan_depth[layer * occ.strides.x]);
     return ss_load_pyramid(layer, occ.levels.x, ivec2(0));
 }
 
@@ -44,33 +42,41 @@ vec2 ss_unite(vec2 a, vec2 b)
     return vec2(min(a.x, b.x), max(a.y, b.y));
 }
 
-// (farthest, nearest) of texels lo to hi, both inside the map.
-vec2 ss_range(uint layer, ivec2 lo, ivec2 hi)
+// (farthest, nearest) of texels lo to hi, both inside the map, from the pyramid: up to four times their number. Level 0 is
+// never read: a branch costs more than the texels it saves.
+vec2 ss_range_pyramid(uint layer, ivec2 lo, ivec2 hi)
 {
     const int d = max(hi.x - lo.x, hi.y - lo.y);
-    const uint level = d <= 1 ? 0u : min(uint(findMSB(d - 1)) + 1u, occ.levels.x);
-    if (SS_ACCEL_WIDE && level > occ.levels.y) {
-        const ivec2 a = lo >> int(occ.levels.y), b = hi >> int(occ.levels.y);
-        const int cells = max(b.x - a.x, b.y - a.y) + 1;
-        const uint k = uint(findMSB(cells));
-        if (k == 0u || k > plan.built.x)
-            return ss_root(layer);
-        // A wide texel at x covers [x - h, x + h - 1]; a side shorter than 2 h is covered by one in its middle.
-        const int h = 1 << (k - 1u);
-        const ivec2 middle = (a + b + 1) >> 1;
-        const ivec2 first = mix(a + h, middle, lessThan(b - a + 1, ivec2(2 * h)));
-        const ivec2 last = mix(b - h + 1, middle, lessThan(b - a + 1, ivec2(2 * h)));
-        return ss_unite(ss_unite(ss_load_wide(layer, k, first), ss_load_wide(layer, k, ivec2(last.x, first.y))),
-                        ss_unite(ss_load_wide(layer, k, ivec2(first.x, last.y)), ss_load_wide(layer, k, last)));
-    }
-    if (level == 0u) {
-        const float a = ss_load_fan_depth(layer, lo), b = ss_load_fan_depth(layer, ivec2(hi.x, lo.y));
-        const float c = ss_load_fan_depth(layer, ivec2(lo.x, hi.y)), e = ss_load_fan_depth(layer, hi);
-        return vec2(min(min(a, b), min(c, e)), max(max(a, b), max(c, e)));
-    }
-    const ivec2 a = lo >> int(level), b = hi >> int(level);
-    return ss_unite(ss_unite(ss_load_pyramid(layer, level, a), ss_load_pyramid(layer, level, ivec2(b.x, a.y))),
-                    ss_unite(ss_load_pyramid(layer, level, ivec2(a.x, b.y)), ss_load_pyramid(layer, level, b)));
+    // One level below the one that always will do is enough if the rectangle lies well in it.
+    const int above = findMSB(max(d - 1, 1));
+    const ivec2 cells = (hi >> above) - (lo >> above);
+    const int level = min(above + (above > 0 && max(cells.x, cells.y) <= 1 ? 0 : 1), int(occ.levels.x));
+    const ivec2 a = lo >> level, b = hi >> level;
+    const int row = int(occ.pyramid[level].y);
+    const uint base = layer * occ.strides.y + ss_level_offset(uint(level));
+    return ss_unite(ss_unite(pyramid[base + uint(a.y * row + a.x)], pyramid[base + uint(a.y * row + b.x)]),
+                    ss_unite(pyramid[base + uint(b.y * row + a.x)], pyramid[base + uint(b.y * row + b.x)]));
+}
+
+// The same, from the wide levels where they are: at most twice the width and height.
+vec2 ss_range(uint layer, ivec2 lo, ivec2 hi)
+{
+    const vec2 range = ss_range_pyramid(layer, lo, hi);
+    if (!SS_ACCEL_WIDE)
+        return range;
+    const int join = int(occ.levels.y);
+    const ivec2 a = lo >> join, b = hi >> join;
+    const int cells = max(b.x - a.x, b.y - a.y) + 1, k = findMSB(cells);
+    if (k < 1 || k > int(plan.built.x))
+        return range;
+    // A wide texel at x covers [x - h, x + h - 1]; a side shorter than 2 h is covered by one in its middle.
+    const int h = 1 << (k - 1);
+    const ivec2 middle = (a + b + 1) >> 1;
+    const ivec2 first = mix(a + h, middle, lessThan(b - a + 1, ivec2(2 * h)));
+    const ivec2 last = mix(b - h + 1, middle, lessThan(b - a + 1, ivec2(2 * h)));
+    return ss_unite(
+        ss_unite(ss_load_wide(layer, uint(k), first), ss_load_wide(layer, uint(k), ivec2(last.x, first.y))),
+        ss_unite(ss_load_wide(layer, uint(k), ivec2(first.x, last.y)), ss_load_wide(layer, uint(k), last)));
 }
 
 #endif

@@ -51,6 +51,14 @@ float ss_eta(vec4 h, vec2 gradient)
            exp2(-20.0) * max(abs(here.z), abs(gradient.x) + abs(gradient.y));
 }
 
+// What a surface turned by another 27 degrees would rise over a texel: surfaces are less flat than their planes, and what is
+// lower than that over a receiver is lit as far as the map can tell.
+float ss_slack(float g)
+{
+    const float texel = 0.5 * (occ.depths.y + occ.depths.z);
+    return 0.5 * texel * ((occ.size.w & SS_FLAG_ORTHOGRAPHIC) != 0u ? 1.0 : abs(g));
+}
+
 vec2 ss_clamp_gradient(vec2 gradient, float g)
 {
     const float tan_limit = 114.0; // tan 89.5 degrees

@@ -70,9 +70,15 @@ typedef struct ss_ivec4 {
 #define SS_PRIMITIVE_QUAD 2
 #define SS_PRIMITIVE_QUAD_RECTANGLE 3
 
-#define SS_TILE 8          /* pixels a side */
-#define SS_MAX_LEVELS 16   /* levels of a 32768 texel map */
+#define SS_TILE_X 8 /* pixels of a tile */
+#define SS_TILE_Y 8
+#define SS_TILE_PIXELS 64
+#define SS_EVALUATE_GROUP 64
+#define SS_MAX_LEVELS 16 /* levels of a 32768 texel map */
 #define SS_MAX_REFINEMENTS 3
+/* Words per tile in the tiles buffer: state, undecided list (tile, nearest occluder), and scratch that holds the bounds of
+ * the tile's columns first and the active list (pixel, nearest occluder) later. */
+#define SS_TILE_WORDS (1 + 2 + 2 * SS_TILE_PIXELS)
 #define SS_DISPATCH_WIDTH 32768 /* indirect dispatches wrap into y beyond this */
 
 #define SS_STATE_LIT 0
@@ -94,8 +100,8 @@ SS_STRUCT(ss_occluders)
     SS_UVEC4 size;       /* width, height, layers, SS_FLAG_* */
     SS_UVEC4 levels;     /* top of the pyramid, join level, wide levels allocated, unused */
     SS_UVEC4 strides;    /* texels per layer: fan depth, pyramid; unused */
-    SS_UVEC4 offsets[4]; /* first texel of pyramid level i at [i / 4][i % 4]; level 0 unused */
-    SS_UVEC4 unused[4];  /* ss_plan begins at a multiple of every offset alignment */
+    SS_UVEC4 unused[8]; /* ss_plan begins at a multiple of every offset alignment */
+    SS_UVEC4 pyramid[SS_MAX_LEVELS]; /* per level: first texel, width; level 0 and the rest unused */
 }
 SS_STRUCT_END(ss_occluders);
 
@@ -124,9 +130,9 @@ SS_STRUCT_END(ss_frame);
 SS_STRUCT(ss_control)
 {
     SS_UVEC4 pixels_args;   /* groups x, y, z; tiles in the undecided list */
-    SS_UVEC4 evaluate_args; /* likewise, penumbra list */
-    SS_UINT stats[20];      /* softsh_stats, as pairs of words; storage buffers only */
-    SS_UINT unused[4];
+    SS_UVEC4 evaluate_args; /* groups x, y, z; pixels in the active list */
+    SS_UINT stats[18];      /* softsh_stats, as pairs of words; storage buffers only */
+    SS_UINT unused[6];
 }
 SS_STRUCT_END(ss_control);
 
@@ -138,8 +144,7 @@ SS_STRUCT_END(ss_control);
 #define SS_STAT_PRIMITIVES 5
 #define SS_STAT_TILES 6
 #define SS_STAT_UNDECIDED 7
-#define SS_STAT_PENUMBRA 8
-#define SS_STAT_CLAMPED 9
+#define SS_STAT_CLAMPED 8
 
 /* Push constants of the passes that need some. */
 SS_STRUCT(ss_convert_push)
