@@ -4,6 +4,7 @@ set(SOFTSHADOW_SHADERS
     hierarchy/hierarchy_reduce
     hierarchy/hierarchy_plan
     hierarchy/hierarchy_widen
+    classify/classify_columns
     classify/classify_tiles
     classify/classify_pixels
     evaluate/bitmask_evaluate
