@@ -13,7 +13,7 @@ static struct {
     unsigned fail_at;
     VkResult fail_result;
     const char *failed_call, *hidden;
-    unsigned drop_at;
+    unsigned drop_first, drop_count;
     char after_barrier[MOST_BARRIERS][NAME_SIZE];
     struct {
         const char *kind;
@@ -21,7 +21,7 @@ static struct {
     } objects[MOST_OBJECTS];
     unsigned host_alive, host_fail_at;
     bool host_failed;
-} spy = {.drop_at = UINT32_MAX};
+} spy;
 
 static mtx_t lock;
 static once_flag lock_made = ONCE_FLAG_INIT;
@@ -209,7 +209,7 @@ static VKAPI_ATTR void VKAPI_CALL wrap_CmdPipelineBarrier(VkCommandBuffer cmd, V
 {
     command("vkCmdPipelineBarrier");
     acquire();
-    const bool drop = spy.counts.barriers == spy.drop_at;
+    const bool drop = spy.counts.barriers - spy.drop_first < spy.drop_count; /* wraps */
     spy.counts.barriers++;
     if (spy.counts.barriers <= MOST_BARRIERS)
         spy.after_barrier[spy.counts.barriers - 1][0] = '\0';
@@ -368,10 +368,11 @@ void spy_hide(const char *name)
     spy.hidden = name;
 }
 
-void spy_drop_barrier(unsigned k)
+void spy_drop_barriers(unsigned first, unsigned count)
 {
     spy.counts.barriers = 0;
-    spy.drop_at = k;
+    spy.drop_first = first;
+    spy.drop_count = count;
 }
 
 const char *spy_after_barrier(unsigned k)

@@ -33,8 +33,8 @@ const char *spy_failed_call(void);
 /* One function that the proc-addr functions do not know; NULL: they know all. The string is kept. */
 void spy_hide(const char *name);
 
-/* Drops barrier number `k`, counted from now on, from 0; UINT32_MAX: none. */
-void spy_drop_barrier(unsigned k);
+/* Drops `count` barriers from number `first` on, counted from now on, from 0. */
+void spy_drop_barriers(unsigned first, unsigned count);
 /* What followed barrier number `k`: a pass's label or a command's name. */
 const char *spy_after_barrier(unsigned k);
 
