@@ -150,6 +150,7 @@ softsh_result softsh_cmd_build_occluders(VkCommandBuffer cmd, softsh_occluders *
 
     o->built = true;
     o->wide = plan.layout.wide_levels > 0;
+    o->layered = info->map_count > 1;
     o->map = plan.maps[0];
     o->light = plan.light;
     return SOFTSH_SUCCESS;

@@ -31,7 +31,7 @@ struct softsh_occluders {
 
     /* Of the last recorded build. */
     bool built;
-    bool wide;
+    bool wide, layered; /* has wide levels, has more than one layer */
     softshi_map_space map;
     softshi_light_space light;
 };

@@ -73,15 +73,17 @@ static softsh_result create_sets(softsh_view *v, uint32_t recordings)
 static softsh_result create_pipelines(softsh_view *v)
 {
     softsh_result result = SOFTSH_SUCCESS;
-    for (int wide = 0; wide < 2 && result == SOFTSH_SUCCESS; wide++) {
+    for (int kind = 0; kind < SOFTSHI_KINDS && result == SOFTSH_SUCCESS; kind++) {
         softshi_specialization constants = softshi_settings_specialize(&v->settings, v->normals, v->stats);
-        constants.values[SS_SPEC_ACCEL_WIDE] = (uint32_t)wide;
-        result = softshi_classify_create(v, wide, &constants);
+        constants.values[SS_SPEC_ACCEL_WIDE] = kind & 1;
+        constants.values[SS_SPEC_LAYERED] = kind >> 1;
+        result = softshi_classify_create(v, kind, &constants);
         if (result == SOFTSH_SUCCESS)
-            result = softshi_bitmask_create(v, wide, &constants);
-        if (result == SOFTSH_SUCCESS && wide == 0)
+            result = softshi_bitmask_create(v, kind, &constants);
+        constants.values[SS_SPEC_LAYERED] = 1;
+        if (result == SOFTSH_SUCCESS && kind == 0)
             result = softshi_hard_create(v, &constants);
-        if (result == SOFTSH_SUCCESS && wide == 0 && v->settings.filter_passes > 0)
+        if (result == SOFTSH_SUCCESS && kind == 0 && v->settings.filter_passes > 0)
             result = softshi_post_filter_create(v, &constants);
     }
     return result;
@@ -129,11 +131,14 @@ void softsh_view_destroy(softsh_view *v)
         return;
     const softsh_context *context = v->context;
     softshi_view_pipelines *p = &v->pipelines;
-    softshi_pipeline *const all[] = {&p->classify_tiles[0], &p->classify_tiles[1], &p->classify_pixels[0],
-                                     &p->classify_pixels[1], &p->evaluate[0],      &p->evaluate[1],
-                                     &p->classify_columns,  &p->hard,              &p->filter};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-        softshi_pipeline_destroy(context, all[i]);
+    for (int kind = 0; kind < SOFTSHI_KINDS; kind++) {
+        softshi_pipeline_destroy(context, &p->classify_tiles[kind]);
+        softshi_pipeline_destroy(context, &p->classify_pixels[kind]);
+        softshi_pipeline_destroy(context, &p->evaluate[kind]);
+    }
+    softshi_pipeline_destroy(context, &p->classify_columns);
+    softshi_pipeline_destroy(context, &p->hard);
+    softshi_pipeline_destroy(context, &p->filter);
     if (v->pool)
         context->vk.DestroyDescriptorPool(context->device, v->pool, context->allocator);
     softshi_block_destroy(context, &v->block);

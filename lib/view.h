@@ -8,9 +8,12 @@
 #include "vulkan/memory.h"
 #include "vulkan/pass.h"
 
-/* Passes that query the hierarchy come in two kinds: for occluders without and with wide levels. */
+/* Passes that query the hierarchy come in four kinds, for what a view cannot know: occluders without and with wide levels
+ * (bit 0), with one layer and with more (bit 1). */
+enum { SOFTSHI_KINDS = 4 };
+
 typedef struct softshi_view_pipelines {
-    softshi_pipeline classify_tiles[2], classify_pixels[2], evaluate[2];
+    softshi_pipeline classify_tiles[SOFTSHI_KINDS], classify_pixels[SOFTSHI_KINDS], evaluate[SOFTSHI_KINDS];
     softshi_pipeline classify_columns, hard, filter;
 } softshi_view_pipelines;
 
@@ -33,6 +36,7 @@ struct softsh_view {
 typedef struct softshi_visibility {
     softsh_view *view;
     const softsh_occluders *occluders;
+    int kind; /* of pipelines */
     softshi_recorder *recorder;
     ss_frame frame;
 } softshi_visibility;

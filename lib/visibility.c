@@ -121,7 +121,8 @@ softsh_result softsh_cmd_compute_visibility(VkCommandBuffer cmd, softsh_view *v,
     softsh_result result = check(v, info, &area);
     if (result != SOFTSH_SUCCESS)
         return result;
-    softshi_visibility visibility = {.view = v, .occluders = info->occluders};
+    softshi_visibility visibility = {
+        .view = v, .occluders = info->occluders, .kind = info->occluders->wide | info->occluders->layered << 1};
     result = softshi_camera_space_create(v->context, info->cameras, &info->occluders->map, &visibility.frame);
     if (result != SOFTSH_SUCCESS)
         return result;

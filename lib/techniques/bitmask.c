@@ -2,16 +2,16 @@
  * the penumbra tiles; pattern, primitive and budget are specialization constants and parameters of its shader. */
 #include "techniques.h"
 
-softsh_result softshi_bitmask_create(softsh_view *view, int wide, const softshi_specialization *constants)
+softsh_result softshi_bitmask_create(softsh_view *view, int kind, const softshi_specialization *constants)
 {
-    return softshi_pipeline_create(view->context, SOFTSHI_SHADER_BITMASK_EVALUATE, constants, &view->pipelines.evaluate[wide]);
+    return softshi_pipeline_create(view->context, SOFTSHI_SHADER_BITMASK_EVALUATE, constants, &view->pipelines.evaluate[kind]);
 }
 
 void softshi_bitmask_record(const softshi_visibility *visibility)
 {
     const softsh_view *view = visibility->view;
     const softshi_pass evaluate = {
-        .pipeline = &view->pipelines.evaluate[visibility->occluders->wide],
+        .pipeline = &view->pipelines.evaluate[visibility->kind],
         .reads = SOFTSHI_HIERARCHY | SOFTSHI_FRAME | SOFTSHI_TILES,
         .writes = SOFTSHI_CONTROL | SOFTSHI_FILTER | SOFTSHI_VISIBILITY,
         .indirect = view->block.buffer,

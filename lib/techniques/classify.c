@@ -2,25 +2,25 @@
  * Schwarz and Stamminger 2007, section 5; tiles and compaction are ours). Each stage dispatches the next. */
 #include "techniques.h"
 
-softsh_result softshi_classify_create(softsh_view *view, int wide, const softshi_specialization *constants)
+softsh_result softshi_classify_create(softsh_view *view, int kind, const softshi_specialization *constants)
 {
     softsh_result result = SOFTSH_SUCCESS;
-    if (wide == 0)
+    if (kind == 0)
         result = softshi_pipeline_create(view->context, SOFTSHI_SHADER_CLASSIFY_COLUMNS, constants,
                                          &view->pipelines.classify_columns);
     if (result == SOFTSH_SUCCESS)
         result = softshi_pipeline_create(view->context, SOFTSHI_SHADER_CLASSIFY_TILES, constants,
-                                         &view->pipelines.classify_tiles[wide]);
+                                         &view->pipelines.classify_tiles[kind]);
     if (result == SOFTSH_SUCCESS)
         result = softshi_pipeline_create(view->context, SOFTSHI_SHADER_CLASSIFY_PIXELS, constants,
-                                         &view->pipelines.classify_pixels[wide]);
+                                         &view->pipelines.classify_pixels[kind]);
     return result;
 }
 
 void softshi_classify_record(const softshi_visibility *visibility)
 {
     const softsh_view *view = visibility->view;
-    const int wide = visibility->occluders->wide;
+    const int kind = visibility->kind;
     const softshi_pass columns = {
         .pipeline = &view->pipelines.classify_columns,
         .reads = SOFTSHI_HEADER | SOFTSHI_FRAME,
@@ -29,14 +29,14 @@ void softshi_classify_record(const softshi_visibility *visibility)
     };
     softshi_record_pass(visibility->recorder, &columns);
     const softshi_pass tiles = {
-        .pipeline = &view->pipelines.classify_tiles[wide],
+        .pipeline = &view->pipelines.classify_tiles[kind],
         .reads = SOFTSHI_HIERARCHY | SOFTSHI_FRAME,
         .writes = SOFTSHI_CONTROL | SOFTSHI_TILES | SOFTSHI_VISIBILITY,
         .groups = {(visibility->frame.tiles.x + 7) / 8, (visibility->frame.tiles.y + 7) / 8, 1},
     };
     softshi_record_pass(visibility->recorder, &tiles);
     const softshi_pass pixels = {
-        .pipeline = &view->pipelines.classify_pixels[wide],
+        .pipeline = &view->pipelines.classify_pixels[kind],
         .reads = SOFTSHI_HIERARCHY | SOFTSHI_FRAME,
         .writes = SOFTSHI_CONTROL | SOFTSHI_TILES | SOFTSHI_FILTER | SOFTSHI_VISIBILITY,
         .indirect = view->block.buffer,

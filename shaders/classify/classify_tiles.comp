@@ -74,13 +74,23 @@ tile_bounds bound(ivec2 corner, tile_depth d)
     t.hi = vec2(-3e38);
     t.g_lo = 3e38;
     t.g_hi = -3e38;
+    // Homogeneous map coordinates are affine in the pixel and the depth: one corner, and the steps to the others.
     const mat4 to_map = mat4(frame.to_map[0], frame.to_map[1], frame.to_map[2], frame.to_map[3]);
+    const vec2 side = vec2(SS_TILE_X - 1, SS_TILE_Y - 1);
+    const vec4 origin = vec4((vec2(corner) + 0.5) * frame.camera.yz - 1.0, d.first + d.residual.x, 1.0) * to_map;
+    const vec4 along_x = vec4(side.x * frame.camera.y, 0.0, side.x * d.step.x, 0.0) * to_map;
+    const vec4 along_y = vec4(0.0, side.y * frame.camera.z, side.y * d.step.y, 0.0) * to_map;
+    const vec4 across = vec4(0.0, 0.0, d.residual.y - d.residual.x, 0.0) * to_map;
     vec3 p[8];
     vec4 h;
     for (int i = 0; i < 8; i++) {
-        const vec2 at = vec2((i & 1) == 0 ? 0 : SS_TILE_X - 1, (i & 2) == 0 ? 0 : SS_TILE_Y - 1);
-        const float depth = d.first + dot(d.step, at) + ((i & 4) == 0 ? d.residual.x : d.residual.y);
-        h = vec4((vec2(corner) + at + 0.5) * frame.camera.yz - 1.0, depth, 1.0) * to_map;
+        h = origin;
+        if ((i & 1) != 0)
+            h += along_x;
+        if ((i & 2) != 0)
+            h += along_y;
+        if ((i & 4) != 0)
+            h += across;
         t.usable = t.usable && ss_is_in_front(h);
         p[i] = h.xyz / h.w;
         t.lo = min(t.lo, p[i].xy);
@@ -143,9 +153,9 @@ uint classify(tile_bounds t, inout float g_hi, inout uint nodes)
     for (int i = 0; i < SS_MAX_REFINEMENTS && state == SS_STATE_PIXELS; i++) {
         const ss_samples s = ss_kernel_samples(ss_kernel_box(t.lo, t.hi, t.g_lo, den, g_hi));
         vec2 range = vec2(-3e38);
-        for (uint layer = 0u; layer < occ.size.z; layer++)
+        for (uint layer = 0u; layer < ss_layers(); layer++)
             range = max(range, ss_range_pyramid(layer, s.texel_lo, s.texel_hi));
-        nodes += 4u * occ.size.z;
+        nodes += 4u * ss_layers();
         const float rise = dot(abs(t.plane.xy), vec2(s.texel_hi - s.texel_lo + 1)) + t.eta;
         if (!(range.y > t.g_lo + (biased ? 0.0 : t.eta)))
             state = SS_STATE_LIT;
@@ -158,7 +168,7 @@ uint classify(tile_bounds t, inout float g_hi, inout uint nodes)
         return state;
     const ss_samples s = ss_kernel_samples(ss_kernel_box(t.lo, t.hi, t.g_lo, den, g_hi));
     bool under = true;
-    for (uint layer = 0u; layer < occ.size.z; layer++)
+    for (uint layer = 0u; layer < ss_layers(); layer++)
         under = under && lies_under_plane(t, layer, s.texel_lo, s.texel_hi);
     return under ? SS_STATE_LIT : SS_STATE_PIXELS;
 }

@@ -157,12 +157,12 @@ void main()
     float mask_occlusion = 0.0, area_occlusion = 0.0;
     ss_mask_clear();
     ss_area = 0.0;
-    for (uint layer = 0u; layer < occ.size.z; layer++) {
+    for (uint layer = 0u; layer < ss_layers(); layer++) {
         if (SS_IS_PATCH)
             add_patches(layer, samples, b, r, band);
         else
             add_quads(layer, samples, b, r, band);
-        if (SS_MERGE_MAXIMUM || layer + 1u == occ.size.z) {
+        if (SS_MERGE_MAXIMUM || layer + 1u == ss_layers()) {
             if (SS_PATTERN_SIDE != 0)
                 mask_occlusion = max(mask_occlusion, ss_mask_occlusion(disc));
             area_occlusion = max(area_occlusion, ss_area * ss_area_scale());
@@ -176,7 +176,7 @@ void main()
         ss_store_filter_values(pixel, area_occlusion, occlusion);
     if (SS_STATS) {
         const ivec2 n = samples.hi - samples.lo + (SS_IS_PATCH ? 1 : 0);
-        ss_count(SS_STAT_PRIMITIVES, uint(max(n.x, 0) * max(n.y, 0)) * occ.size.z);
+        ss_count(SS_STAT_PRIMITIVES, uint(max(n.x, 0) * max(n.y, 0)) * ss_layers());
         if (samples.clamped)
             ss_count(SS_STAT_CLAMPED, 1u);
     }

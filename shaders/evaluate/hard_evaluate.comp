@@ -25,7 +25,7 @@ void main()
         const float b = frame.bias.x;
         g = (occ.size.w & SS_FLAG_ORTHOGRAPHIC) != 0u ? r.g + b : (b * r.g < 1.0 ? r.g / (1.0 - b * r.g) : 3e38);
     }
-    for (uint layer = 0u; layer < occ.size.z; layer++) {
+    for (uint layer = 0u; layer < ss_layers(); layer++) {
         const float occluder = ss_load_fan_depth(layer, texel);
         dark = dark || (r.valid && occluder > g && occ.light.w - occ.light.z * occluder > 0.0);
     }

@@ -4,6 +4,7 @@
 // One MSSM level (Schwarz and Stamminger 2007, section 5): the range of 2^i x 2^i cells around each cell, from four texels of
 // the level below. The cells are texels of pyramid level `join`: 0 gives the MSSM, more a YSM (2008, section 6).
 #include "ss_types.h"
+#include "ss_specialization.glsl"
 #include "ss_occluder_bindings.glsl"
 
 layout(local_size_x = 32, local_size_y = 4) in;

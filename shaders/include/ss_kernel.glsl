@@ -115,7 +115,7 @@ struct ss_kernel
 float ss_nearest()
 {
     float g = -3e38;
-    for (uint layer = 0u; layer < occ.size.z; layer++)
+    for (uint layer = 0u; layer < ss_layers(); layer++)
         g = max(g, ss_root(layer).y);
     return g;
 }
@@ -132,9 +132,9 @@ ss_kernel ss_find_kernel(ss_receiver r, float g_hi)
         if (!SS_HIERARCHY)
             break;
         vec2 range = vec2(-3e38);
-        for (uint layer = 0u; layer < occ.size.z; layer++)
+        for (uint layer = 0u; layer < ss_layers(); layer++)
             range = max(range, ss_range(layer, k.samples.texel_lo, k.samples.texel_hi));
-        k.nodes += 4u * occ.size.z;
+        k.nodes += 4u * ss_layers();
         float band;
         const float g = ss_biased(r, k.samples.level, band);
         // Rise of the receiver's plane over the samples, and over what a query of a few texels takes in.

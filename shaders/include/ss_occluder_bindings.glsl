@@ -17,4 +17,9 @@ layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_PYRAMID, std430) readonly buffe
 };
 layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_WIDE) uniform texture2DArray wide;
 
+uint ss_layers()
+{
+    return SS_LAYERED ? occ.size.z : 1u;
+}
+
 #endif

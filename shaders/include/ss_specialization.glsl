@@ -13,5 +13,6 @@ layout(constant_id = SS_SPEC_HIERARCHY) const bool SS_HIERARCHY = true;
 layout(constant_id = SS_SPEC_STATS) const bool SS_STATS = false;
 layout(constant_id = SS_SPEC_FILTER) const bool SS_FILTER = false;
 layout(constant_id = SS_SPEC_NORMALS) const bool SS_NORMALS = false;
+layout(constant_id = SS_SPEC_LAYERED) const bool SS_LAYERED = true;
 
 #endif

@@ -63,7 +63,8 @@ typedef struct ss_ivec4 {
 #define SS_SPEC_STATS 8
 #define SS_SPEC_FILTER 9   /* 1: keep values for the post filter */
 #define SS_SPEC_NORMALS 10 /* 1: normals are bound */
-#define SS_SPEC_COUNT 11
+#define SS_SPEC_LAYERED 11 /* 1: more than one layer */
+#define SS_SPEC_COUNT 12
 
 #define SS_PRIMITIVE_PATCH 0
 #define SS_PRIMITIVE_PATCH_EXTENDED 1
