@@ -211,6 +211,9 @@ Options parse(int argc, char **argv)
         list_scenes();
     if (o.scene.empty() == o.model.empty())
         usage_error("expected either --scene or --model");
+    const auto is_scene = [&](const SceneName &known) { return o.scene == known.name; };
+    if (o.model.empty() && std::none_of(scene_names().begin(), scene_names().end(), is_scene))
+        usage_error("unknown scene \"" + o.scene + "\", expected one of those that --scene list prints");
     if (o.out.empty())
         usage_error("expected --out");
     if (!has_extension(o.out, ".png"))
