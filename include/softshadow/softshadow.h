@@ -63,7 +63,8 @@ SOFTSH_API softsh_result softsh_occluders_memory_requirements(const softsh_occlu
 SOFTSH_API softsh_result softsh_view_memory_requirements(const softsh_view *view, VkMemoryRequirements *out);
 
 /* Binds caller memory, once, before the first recording. `size` is what is available from `offset` on. The memory stays
- * the caller's and outlives the object. Any memory type the requirements allow will do; device local is fastest. */
+ * the caller's and outlives the object. Any memory type the requirements allow will do; device local is fastest.
+ * After SOFTSH_ERROR_INVALID_ARGUMENT it may be tried again; after a Vulkan error the object can only be destroyed. */
 SOFTSH_API softsh_result softsh_occluders_bind_memory(softsh_occluders *occluders, VkDeviceMemory memory, VkDeviceSize offset,
                                                       VkDeviceSize size);
 SOFTSH_API softsh_result softsh_view_bind_memory(softsh_view *view, VkDeviceMemory memory, VkDeviceSize offset,
@@ -90,7 +91,7 @@ SOFTSH_API softsh_result softsh_cmd_compute_visibility(VkCommandBuffer cmd, soft
 
 /* Matrices for a square map of a rectangular light looking along its normal (half_u x half_v, or the other way if `target`
  * lies behind): the frustum's centre is `behind` world units behind the light's centre (0: on it) and it covers the
- * sphere (target, radius). `out->struct_size` is set by the caller. Depth is 0 at near, 1 at far. */
+ * sphere (target, radius). `out->struct_size` is set by the caller. Depth is 0 at near, 1 at far. Neither axis is zero. */
 SOFTSH_API softsh_result softsh_light_frustum_create(const softsh_light *light, const double target[3], double radius,
                                                      double behind, softsh_light_frustum *out);
 

@@ -56,7 +56,8 @@ typedef enum softsh_result {
 } softsh_result;
 
 /* One sentence per failed call, naming the field, its value and what was expected. May be called from whichever thread
- * calls the library; must not call back into it. */
+ * calls the library; must not call back into it. Calls on a NULL object, and the two functions without one
+ * (softsh_get_requirements, softsh_light_frustum_create), have no callback: their result is all there is. */
 typedef void (*softsh_message_fn)(void *user, softsh_result result, const char *message);
 
 typedef struct softsh_context softsh_context;
@@ -71,7 +72,7 @@ typedef struct softsh_context_info {
     VkDevice device; /* with the features softsh_get_requirements lists enabled */
     PFN_vkGetInstanceProcAddr get_instance_proc_addr;
     PFN_vkGetDeviceProcAddr get_device_proc_addr;
-    const VkAllocationCallbacks *allocation_callbacks; /* used for host memory and passed to Vulkan; kept; may be NULL */
+    const VkAllocationCallbacks *allocation_callbacks; /* used for host memory and passed to Vulkan; copied; may be NULL */
     VkPipelineCache pipeline_cache;                    /* kept, used when pipelines are made; may be VK_NULL_HANDLE */
     softsh_message_fn message;                         /* may be NULL */
     void *message_user;
@@ -106,7 +107,7 @@ typedef struct softsh_light {
     double half_v[3];      /* rectangle: likewise for the other axis, perpendicular to half_u */
     double direction[3];   /* directional: the way the light travels, any length but zero */
     double angular_radius; /* directional: half the angle the disc of the sun spans, radians, 0 to 0.5 */
-    double radius;         /* disc, sphere: world units; not supported yet, must be 0 */
+    double radius;         /* disc, sphere: world units; not supported yet, must be 0 with the other shapes */
     uint32_t color_count;  /* 0 or 1; more is not supported yet */
     VkImageView texture;   /* not supported yet, must be VK_NULL_HANDLE */
 } softsh_light;
@@ -127,9 +128,9 @@ typedef struct softsh_map {
     uint32_t index;          /* layer: 0 to the number of maps - 1, each once */
     VkImageView view;        /* 2D, one layer, depth aspect (or colour for R32F); usage SAMPLED */
     VkFormat format;         /* D16_UNORM, X8_D24_UNORM_PACK32, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT, R32_SFLOAT */
-    VkImageLayout layout;    /* during the build: SHADER_READ_ONLY_OPTIMAL, DEPTH_STENCIL_READ_ONLY_OPTIMAL or GENERAL */
+    VkImageLayout layout;    /* during the build: SHADER_READ_ONLY_OPTIMAL, GENERAL or, for depth formats, DEPTH_STENCIL_READ_ONLY_OPTIMAL */
     VkExtent2D image_extent; /* size of the image behind the view */
-    VkRect2D rect;           /* the map's part of the image (atlas); zero extent: all of it */
+    VkRect2D rect;           /* the map's part of the image (atlas); all zero: all of it */
     uint32_t array_layer;    /* must be 0: give a view of the layer */
     double view_matrix[16];
     double projection[16];
@@ -155,7 +156,7 @@ typedef struct softsh_occluders_info {
     uint32_t max_layers;    /* 0 means 1; at most SOFTSH_MAX_LAYERS */
     softsh_accel accel;
     uint32_t ysm_join;      /* the YSM's full-resolution part has at most this many texels a side; 0 means 256 */
-    uint32_t max_recordings; /* builds whose command buffers may be pending or re-submitted at once; 0 means 4 */
+    uint32_t max_recordings; /* the last so many builds may be pending or submitted again; 0 means 4, at most 1024 */
     softsh_memory_mode memory_mode;
     const char *name;       /* debug name; copied; may be NULL */
 } softsh_occluders_info;
@@ -174,7 +175,7 @@ typedef struct softsh_view_info {
     VkFormat output_format;             /* R8_UNORM, R16_SFLOAT, R16_UNORM or R32_SFLOAT, with STORAGE usage on this device */
     const softsh_settings *settings;    /* NULL: automatic */
     uint32_t stats;                     /* nonzero: count pixels, nodes and primitives (costs a little) */
-    uint32_t max_recordings;            /* visibility calls whose command buffers may be pending at once; 0 means 16 */
+    uint32_t max_recordings;            /* the last so many visibility calls may be pending or submitted again; 0 means 16, at most 1024 */
     uint32_t normals;                   /* nonzero: this view's cameras come with normals */
     uint32_t max_views;                 /* 0 or 1; more is not supported yet */
     softsh_memory_mode memory_mode;
@@ -214,7 +215,7 @@ typedef struct softsh_stats {
 typedef struct softsh_timestamps {
     uint32_t struct_size;
     VkQueryPool pool;
-    uint32_t first_query;
+    uint32_t first_query; /* first_query + query_count fits 32 bits and the pool */
     uint32_t query_count; /* at least SOFTSH_MAX_PASSES + 1 */
     uint32_t pass_count;  /* out */
     const char *pass_names[SOFTSH_MAX_PASSES]; /* out; static strings */
@@ -225,7 +226,7 @@ typedef struct softsh_visibility_info {
     softsh_occluders *occluders;  /* built by an earlier recording */
     uint32_t camera_count;        /* 1; more is not supported yet */
     const softsh_camera *cameras;
-    VkRect2D render_area;         /* the part of the images that was rendered; zero extent: all of max_extent */
+    VkRect2D render_area;         /* the part of the images that was rendered; all zero: all of max_extent */
     VkImageView visibility;       /* 2D storage image of the view's output_format, layout GENERAL */
     uint32_t override_bias;       /* nonzero: shift receivers by `bias` towards the light instead of the automatic bias */
     double bias;                  /* world units along the map's axis, >= 0 */
