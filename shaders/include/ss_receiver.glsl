@@ -115,7 +115,8 @@ vec2 ss_gradient_from_normal(vec3 n, vec3 here, out bool away)
     const float den = occ.light.w - occ.light.z * here.z;
     const vec2 d = (occ.light.xy - occ.light.z * here.xy) / den;
     const vec2 spread = vec2(abs(bc * occ.a.x + ca * occ.a.z), abs(bc * occ.a.y + ca * occ.a.w)) / den;
-    const float reach = frame.normal_map[0].w * (ab + bc * d.x + ca * d.y) + spread.x + spread.y;
+    const float widest = (occ.size.w & SS_FLAG_DISC) != 0u ? length(spread) : spread.x + spread.y;
+    const float reach = frame.normal_map[0].w * (ab + bc * d.x + ca * d.y) + widest;
     away = reach <= 0.0;
     return vec2(-bc / ab, -ca / ab);
 }
