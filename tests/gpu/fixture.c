@@ -79,7 +79,13 @@ int fixture_teardown(void **state)
 {
     (void)state;
     softsh_context_destroy(context);
+    /* A failed test leaks: one message says enough. */
+    const uint32_t before = device.validation_messages;
+    device.validation_quiet = true;
     gpu_destroy(&device);
+    if (device.validation_messages > before)
+        fprintf(stderr, "validation: %u messages, the last: %.200s\n", device.validation_messages - before,
+                device.last_validation_message);
     return device.validation_messages != 0;
 }
 

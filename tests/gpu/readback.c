@@ -147,18 +147,20 @@ void readback_create(const lamp *l, readback *out)
     ss_occluders *const header = copy_range(o, o->layout.header.offset, sizeof *header);
     ss_plan *const plan = copy_range(o, o->layout.header.offset + sizeof *header, sizeof *plan);
 
+    softshi_occluder_layout layout;
     memset(out, 0, sizeof *out);
     out->width = header->size.x;
     out->height = header->size.y;
     out->layers = header->size.z;
-    out->top = header->levels.x;
-    out->join = header->levels.y;
-    out->wide_allocated = header->levels.z;
+    softshi_layout_occluders((VkExtent2D){out->width, out->height}, out->layers, o->join_texels, &layout);
+    out->top = layout.top;
+    out->join = layout.join;
+    out->wide_allocated = o->layout.wide_levels;
     out->wide_built = plan->built.x;
     out->wide_width = o->layout.wide_extent.width;
     out->wide_height = o->layout.wide_extent.height;
-    out->pyramid_stride = header->strides.y;
-    memcpy(out->pyramid_offsets, header->offsets, sizeof out->pyramid_offsets);
+    out->pyramid_stride = layout.pyramid_texels;
+    memcpy(out->pyramid_offsets, layout.offsets, sizeof out->pyramid_offsets);
     out->fan_depth = copy_range(o, o->layout.fan_depth.offset, o->layout.fan_depth.size);
     out->pyramid = copy_range(o, o->layout.pyramid.offset, o->layout.pyramid.size);
     if (out->wide_built > 0)
