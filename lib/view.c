@@ -73,10 +73,14 @@ static softsh_result create_sets(softsh_view *v, uint32_t recordings)
 static softsh_result create_pipelines(softsh_view *v)
 {
     softsh_result result = SOFTSH_SUCCESS;
-    for (int kind = 0; kind < SOFTSHI_KINDS && result == SOFTSH_SUCCESS; kind++) {
-        softshi_specialization constants = softshi_settings_specialize(&v->settings, v->normals, v->stats);
-        constants.values[SS_SPEC_ACCEL_WIDE] = kind & 1;
-        constants.values[SS_SPEC_LAYERED] = kind >> 1;
+    const int kinds = v->automatic ? SOFTSHI_KINDS : SOFTSHI_KIND_TURNED;
+    for (int kind = 0; kind < kinds && result == SOFTSH_SUCCESS; kind++) {
+        softsh_settings settings = v->settings;
+        if (kind & SOFTSHI_KIND_TURNED)
+            settings.primitive = SOFTSH_PRIMITIVE_MICROQUAD;
+        softshi_specialization constants = softshi_settings_specialize(&settings, v->normals, v->stats);
+        constants.values[SS_SPEC_ACCEL_WIDE] = (kind & SOFTSHI_KIND_WIDE) != 0;
+        constants.values[SS_SPEC_LAYERED] = (kind & SOFTSHI_KIND_LAYERED) != 0;
         result = softshi_classify_create(v, kind, &constants);
         if (result == SOFTSH_SUCCESS)
             result = softshi_bitmask_create(v, kind, &constants);
@@ -107,6 +111,7 @@ softsh_result softsh_view_create(softsh_context *context, const softsh_view_info
     v->max_extent = info->max_extent;
     v->output_format = info->output_format;
     v->settings = softshi_settings_resolve(info->settings);
+    v->automatic = !info->settings || info->settings->technique == SOFTSH_TECHNIQUE_AUTO;
     v->stats = info->stats != 0;
     v->normals = info->normals != 0;
     softshi_layout_view(v->max_extent, v->settings.filter_passes > 0, &v->layout);

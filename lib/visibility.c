@@ -48,7 +48,7 @@ static softsh_result check(const softsh_view *v, const softsh_visibility_info *i
         return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT,
                             "softsh_visibility_info::stats_offset is %llu, expected a multiple of 4",
                             (unsigned long long)info->stats_offset);
-    if (softshi_settings_need_alignment(&v->settings) && !info->occluders->light.point &&
+    if (!v->automatic && softshi_settings_need_alignment(&v->settings) && !info->occluders->light.point &&
         !info->occluders->light.axis_aligned)
         return softshi_fail(context, SOFTSH_ERROR_UNSUPPORTED,
                             "softsh_light: its axes are turned against the map's, which micropatches cannot do; use microquads");
@@ -121,8 +121,13 @@ softsh_result softsh_cmd_compute_visibility(VkCommandBuffer cmd, softsh_view *v,
     softsh_result result = check(v, info, &area);
     if (result != SOFTSH_SUCCESS)
         return result;
+    const softsh_occluders *o = info->occluders;
     softshi_visibility visibility = {
-        .view = v, .occluders = info->occluders, .kind = info->occluders->wide | info->occluders->layered << 1};
+        .view = v,
+        .occluders = o,
+        .kind = (o->wide ? SOFTSHI_KIND_WIDE : 0) | (o->layered ? SOFTSHI_KIND_LAYERED : 0) |
+                (v->automatic && !o->light.axis_aligned ? SOFTSHI_KIND_TURNED : 0),
+    };
     result = softshi_camera_space_create(v->context, info->cameras, &info->occluders->map, &visibility.frame);
     if (result != SOFTSH_SUCCESS)
         return result;

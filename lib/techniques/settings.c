@@ -7,7 +7,10 @@ softsh_settings softshi_settings_resolve(const softsh_settings *settings)
     if (settings)
         s = *settings;
     if (s.technique == SOFTSH_TECHNIQUE_AUTO)
-        s = (softsh_settings){.struct_size = sizeof s, .technique = SOFTSH_TECHNIQUE_BITMASK, .budget = 32};
+        s = (softsh_settings){.struct_size = sizeof s,
+                              .technique = SOFTSH_TECHNIQUE_BITMASK,
+                              .primitive = SOFTSH_PRIMITIVE_MICROPATCH,
+                              .budget = 32};
     if (s.pattern == SOFTSH_PATTERN_DEFAULT)
         s.pattern = SOFTSH_PATTERN_16X16_JITTERED;
     if (s.primitive == SOFTSH_PRIMITIVE_DEFAULT)
