@@ -9,7 +9,7 @@
 static const double up[3] = {0.0, 1.0, 0.0};
 
 /* The floor is 10 below the lamp and does not fill the camera's image; one rectangle is level, one is not. */
-static const reference_surface surfaces[3] = {
+static const reference_surface stage[3] = {
     {.center = {0.0, 0.0, -10.0}, .u = {7.0, 0.0, 0.4}, .v = {0.0, 7.0, -0.3}},
     {.center = {-0.6, 0.4, -7.0}, .u = {1.3, 0.4, 0.0}, .v = {-0.3, 0.9, 0.0}},
     {.center = {1.0, -0.5, -4.5}, .u = {0.5, 0.3, 0.3}, .v = {-0.4, 0.5, -0.2}},
@@ -127,12 +127,12 @@ static void cast_camera(const scene_info *info, scene *s, uint64_t *state)
     reference_look_at(at, target, upright, s->eye.view);
     reference_perspective((const double[4]){-0.5, 0.5, -0.375, 0.375}, 0.5, 60.0, info->range, s->eye.projection);
     eye_reference(&s->eye, &camera);
-    reference_cast(s->eye.view, s->eye.projection, width, height, camera.far_depth, REFERENCE_FORMAT_EXACT, surfaces, 3,
+    reference_cast(s->eye.view, s->eye.projection, width, height, camera.far_depth, REFERENCE_FORMAT_EXACT, stage, 3,
                    s->depth, hits);
     for (uint32_t i = 0; i < width * height; i++) {
         double normal[3] = {0.0, 0.0, 0.0};
         if (hits[i] >= 0)
-            reference_surface_normal(&surfaces[hits[i]], at, normal);
+            reference_surface_normal(&stage[hits[i]], at, normal);
         /* Some blocks face away from everything. */
         const double side = (i % width / 5 + i / width / 5) % 9 == 0 ? -2.5 : 2.5;
         for (int k = 0; k < 3; k++) {
@@ -174,7 +174,7 @@ void scene_create(const scene_info *info, scene *out)
                                          &out->lamp.light));
         /* The first of two layers lacks the nearer rectangle, the second all but that. */
         reference_cast(out->lamp.view, out->lamp.layers[i].projection, width, height, map.far_depth,
-                       REFERENCE_FORMAT_EXACT, surfaces + (i ? 2 : 0),
+                       REFERENCE_FORMAT_EXACT, stage + (i ? 2 : 0),
                        i                           ? 1
                        : out->lamp.layer_count > 1 ? 2
                                                    : 3,
@@ -185,6 +185,44 @@ void scene_create(const scene_info *info, scene *out)
             add_nonsense(&state, width * height, out->map_depth[i]);
     }
     cast_camera(info, out, &state);
+}
+
+void scene_cast(scene *out, const reference_surface *surfaces, uint32_t count)
+{
+    const uint32_t pixels = out->eye.place.width * out->eye.place.height;
+    const uint32_t texels = out->lamp.place.width * out->lamp.place.height;
+    double inverse[16], at[4];
+    reference_camera camera;
+    int32_t *const hits = malloc(pixels * sizeof *hits);
+
+    out->depth = calloc(pixels, sizeof *out->depth);
+    out->normals = calloc(pixels, 3 * sizeof *out->normals);
+    assert_true(hits && out->depth && out->normals);
+    for (uint32_t i = 0; i < out->lamp.layer_count; i++) {
+        reference_map map;
+        out->map_depth[i] = calloc(texels, sizeof(float));
+        assert_non_null(out->map_depth[i]);
+        assert_true(reference_map_derive(&map, out->lamp.view, out->lamp.layers[i].projection, out->lamp.place.width,
+                                         out->lamp.place.height, &out->lamp.light));
+        reference_cast(out->lamp.view, out->lamp.layers[i].projection, map.width, map.height, map.far_depth,
+                       REFERENCE_FORMAT_EXACT, surfaces, count, out->map_depth[i], NULL);
+        out->lamp.layers[i].depth = out->map_depth[i];
+    }
+    eye_reference(&out->eye, &camera);
+    reference_cast(out->eye.view, out->eye.projection, camera.width, camera.height, camera.far_depth,
+                   REFERENCE_FORMAT_EXACT, surfaces, count, out->depth, hits);
+    assert_true(reference_matrix_inverse(out->eye.view, inverse));
+    reference_matrix_apply(inverse, (const double[4]){0.0, 0.0, 0.0, 1.0}, at);
+    for (uint32_t i = 0; i < pixels; i++) {
+        double normal[3] = {0.0, 0.0, 0.0};
+        if (hits[i] >= 0)
+            reference_surface_normal(&surfaces[hits[i]], at, normal);
+        for (uint32_t k = 0; k < 3; k++)
+            out->normals[3 * i + k] = (float)normal[k];
+    }
+    free(hits);
+    out->eye.depth = out->depth;
+    out->eye.normals = out->normals;
 }
 
 void scene_destroy(scene *s)

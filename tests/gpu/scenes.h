@@ -40,6 +40,8 @@ typedef struct scene {
 } scene;
 
 void scene_create(const scene_info *info, scene *out);
+/* Depths and normals of surfaces for the light, matrices and sizes `out->lamp` and `out->eye` have already. */
+void scene_cast(scene *out, const reference_surface *surfaces, uint32_t count);
 void scene_destroy(scene *s);
 /* A sentence's worth of what a scene is. */
 const char *scene_light_name(scene_light light);
