@@ -282,5 +282,5 @@ softsh_result softshi_camera_space_create(const softsh_context *context, const s
 
 double softshi_depth_precision(VkFormat format)
 {
-    return format == VK_FORMAT_D16_UNORM ? ldexp(1.0, -16) : ldexp(1.0, -23);
+    return format == VK_FORMAT_D16_UNORM ? ldexp(1.0, -16) : ldexp(1.0, -21);
 }

@@ -103,7 +103,7 @@ static bool is_reversed(const mat4 *m)
 
 static double depth_precision(VkFormat format)
 {
-    return format == VK_FORMAT_D16_UNORM || format == VK_FORMAT_D16_UNORM_S8_UINT ? ldexp(1.0, -16) : ldexp(1.0, -23);
+    return format == VK_FORMAT_D16_UNORM || format == VK_FORMAT_D16_UNORM_S8_UINT ? ldexp(1.0, -16) : ldexp(1.0, -21);
 }
 
 static peer_vec4 to_vec4(const double v[4])

@@ -37,11 +37,18 @@ ivec2 ss_floor(vec2 x)
     return ivec2(floor(clamp(x, vec2(-65536.0), vec2(65536.0))));
 }
 
+// Samples a side that one invocation may look at without a budget. A bound for the loops: drivers stop shaders that run too
+// long, the software driver silently after 65,535 rounds of all loops together; a quad takes two.
+uint ss_most_samples()
+{
+    return uint((SS_IS_PATCH ? 240.0 : 160.0) * inversesqrt(float(ss_layers())));
+}
+
 uint ss_extent_level(int extent)
 {
-    const uint budget = frame.quality.x;
+    const uint most = ss_most_samples(), budget = frame.quality.x == 0u ? most : min(frame.quality.x, most);
     uint level = 0u;
-    if (budget != 0u && uint(extent) > budget)
+    if (uint(extent) > budget)
         level = uint(findMSB((uint(extent) - 1u) / budget)) + 1u;
     return min(max(level, frame.quality.y), occ.levels.x);
 }

@@ -6,7 +6,7 @@
 
 /* Precision of a depth format, the rho of section 3. */
 #define REFERENCE_PRECISION_16 (1.0 / 65536.0)
-#define REFERENCE_PRECISION (1.0 / 8388608.0)
+#define REFERENCE_PRECISION (1.0 / 2097152.0)
 
 typedef struct reference_camera {
     double view_inverse[16], projection_inverse[16];
