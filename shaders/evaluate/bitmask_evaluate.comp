@@ -67,8 +67,9 @@ float sample_depth(uint layer, ivec2 at, uint level)
 bool occludes(float g, vec2 at, back_projection b, ss_receiver r, float band)
 {
     // Over the plane through the biased receiver: blocks of nearest depths lift the surface and the receiver alike.
-    const float height = g - (b.g - r.eta + dot(r.gradient, at - r.uv));
-    return g > b.g && occ.light.w - occ.light.z * g > 0.0 && (band < 0.0 || ss_is_off_plane(r, height, band));
+    const vec2 away = at - r.uv;
+    const float height = g - (b.g - r.eta + dot(r.gradient, away)), noise = r.drift * (abs(away.x) + abs(away.y));
+    return g > b.g && occ.light.w - occ.light.z * g > 0.0 && (band < 0.0 || ss_is_off_plane(r, height, band + noise));
 }
 
 struct vertex

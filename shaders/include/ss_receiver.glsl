@@ -14,6 +14,7 @@ struct ss_receiver
     float g;
     vec2 gradient; // of g over (u, v) on the receiver's plane
     float eta;     // precision of the depths compared with g
+    float drift;   // precision of the plane, per texel of distance
     bool away;     // all of the light lies behind the plane its normal gives
     bool smooth_surface; // the plane is good enough to tell what lies below it
 };
@@ -80,7 +81,7 @@ bool ss_neighbour_difference(ivec2 at, vec3 here, out vec3 difference)
 
 // Gradient from the neighbour on each axis whose g is nearer. `smooth_surface` says whether all four neighbours agree on
 // the plane: noise and edges do not.
-vec2 ss_gradient_from_depth(ivec2 pixel, vec3 here, float eta, out bool smooth_surface)
+vec2 ss_gradient_from_depth(ivec2 pixel, vec3 here, float eta, out float drift, out bool smooth_surface)
 {
     vec3 d[4];
     bool found[4];
@@ -93,10 +94,13 @@ vec2 ss_gradient_from_depth(ivec2 pixel, vec3 here, float eta, out bool smooth_s
     const float det = dx.x * dy.y - dx.y * dy.x;
     const float scale = dot(dx.xy, dx.xy) * dot(dy.xy, dy.xy);
     smooth_surface = false;
+    drift = 0.0;
     // Two directions that differ by less than a thousandth of a radian do not span a plane.
     if (!(found[0] || found[1]) || !(found[2] || found[3]) || !(det * det > 1e-6 * scale))
         return vec2(0.0);
     const vec2 gradient = vec2(dx.z * dy.y - dy.z * dx.y, dy.z * dx.x - dx.z * dy.x) / det;
+    // Both ends of a difference are precise to eta.
+    drift = 2.0 * eta * inversesqrt(min(dot(dx.xy, dx.xy), dot(dy.xy, dy.xy)));
     smooth_surface = true;
     for (int i = 0; i < 4; i++)
         smooth_surface = smooth_surface && found[i] &&
@@ -143,8 +147,9 @@ ss_receiver ss_load_receiver(ivec2 pixel)
         }
     }
     r.smooth_surface = !from_depth;
+    r.drift = 0.0;
     if (from_depth)
-        r.gradient = ss_gradient_from_depth(pixel, here, ss_eta(h, vec2(0.0)), r.smooth_surface);
+        r.gradient = ss_gradient_from_depth(pixel, here, ss_eta(h, vec2(0.0)), r.drift, r.smooth_surface);
     r.gradient = ss_clamp_gradient(r.gradient, r.g);
     r.eta = ss_eta(h, r.gradient);
     return r;

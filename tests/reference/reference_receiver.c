@@ -148,10 +148,11 @@ static const double *difference(const neighbourhood *around, int first)
     return fabs(after[2]) < fabs(before[2]) ? after : before;
 }
 
-static void gradient_from_depth(const neighbourhood *around, double gradient[2])
+/* Also the gradient's precision, given that of the depths. */
+static void gradient_from_depth(const neighbourhood *around, double flat_eta, double gradient[2], double *drift)
 {
     const double *const a = difference(around, 0), *const b = difference(around, 2);
-    gradient[0] = gradient[1] = 0.0;
+    gradient[0] = gradient[1] = *drift = 0.0;
     if (!a || !b)
         return;
     const double determinant = a[0] * b[1] - a[1] * b[0];
@@ -159,6 +160,7 @@ static void gradient_from_depth(const neighbourhood *around, double gradient[2])
         return;
     gradient[0] = (a[2] * b[1] - b[2] * a[1]) / determinant;
     gradient[1] = (a[0] * b[2] - b[0] * a[2]) / determinant;
+    *drift = 2.0 * flat_eta / fmin(hypot(a[0], a[1]), hypot(b[0], b[1]));
 }
 
 bool reference_plane_trusted(const double offset[4][3], const double gradient[2], double flat_eta)
@@ -208,10 +210,10 @@ void reference_receiver_derive(reference_receiver *out, const reference_map *map
         neighbourhood around;
         const double flat[2] = {0.0, 0.0};
         look_around(map, camera, image, x, y, uvg, &around);
-        gradient_from_depth(&around, out->gradient);
+        const double flat_eta = reference_eta(map, bias, uvg[2], moved[2], flat);
+        gradient_from_depth(&around, flat_eta, out->gradient, &out->drift);
         out->trusted = around.counts[0] && around.counts[1] && around.counts[2] && around.counts[3] &&
-                       reference_plane_trusted((const double(*)[3])around.offset, out->gradient,
-                                               reference_eta(map, bias, uvg[2], moved[2], flat));
+                       reference_plane_trusted((const double(*)[3])around.offset, out->gradient, flat_eta);
     }
     reference_gradient_clamp(map, uvg[2], out->gradient);
     const double away = moved[2] - out->gradient[0] * moved[0] - out->gradient[1] * moved[1];

@@ -36,6 +36,7 @@ typedef struct reference_receiver {
     reference_receiver_state state;
     double uvg[3];      /* set unless the state is NONE */
     double gradient[2]; /* dg/du, dg/dv of its plane; set when active, as the rest */
+    double drift;       /* precision of the gradient: error of the plane per texel of distance */
     bool trusted;       /* the plane may be relied on: what lies below it cannot occlude */
     double eta;
     bool override_bias;

@@ -150,7 +150,8 @@ static bool passes(const evaluation *e, const double place[3])
         return true;
     const double height = place[2] - plane_at(e->receiver, place) - lift(e->settings, e->receiver);
     const double band = is_micropatch(e->settings) ? micropatch_band : microquad_band;
-    const double margin = e->receiver->eta + band * slope(e->receiver) * e->spacing;
+    const double distance = fabs(place[0] - e->receiver->uvg[0]) + fabs(place[1] - e->receiver->uvg[1]);
+    const double margin = e->receiver->eta + band * slope(e->receiver) * e->spacing + e->receiver->drift * distance;
     return e->receiver->trusted ? height > margin : fabs(height) > margin;
 }
 
