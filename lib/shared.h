@@ -15,7 +15,7 @@ static_assert(sizeof(ss_occluders) == 512, "std430");
 static_assert(sizeof(ss_plan) == 16 * SS_MAX_LEVELS + 16, "std430");
 static_assert(offsetof(ss_frame, camera) == 128, "std430");
 static_assert(offsetof(ss_frame, area) == 160, "std430");
-static_assert(sizeof(ss_frame) == 208, "std430");
+static_assert(sizeof(ss_frame) == 240, "std430");
 static_assert(offsetof(ss_control, stats) == 32, "std430");
 static_assert(sizeof(ss_control) == 128, "std430");
 static_assert(sizeof(ss_convert_push) == 32, "std430");

@@ -148,7 +148,7 @@ uint classify(tile_bounds t, inout float g_hi, inout uint nodes)
         return SS_STATE_PIXELS;
     if (any(lessThan(t.hi, vec2(0.0))) || any(greaterThan(t.lo, limit)))
         return SS_STATE_LIT;
-    const bool biased = (frame.tiles.w & SS_FLAG_OVERRIDE_BIAS) != 0u;
+    const bool biased = (ss_flags & SS_FLAG_OVERRIDE_BIAS) != 0u;
     uint state = SS_STATE_PIXELS;
     for (int i = 0; i < SS_MAX_REFINEMENTS && state == SS_STATE_PIXELS; i++) {
         const ss_samples s = ss_kernel_samples(ss_kernel_box(t.lo, t.hi, t.g_lo, den, g_hi));

@@ -69,7 +69,9 @@ bool occludes(float g, vec2 at, back_projection b, ss_receiver r, float band)
     // Over the plane through the biased receiver: blocks of nearest depths lift the surface and the receiver alike.
     const vec2 away = at - r.uv;
     const float height = g - (b.g - r.eta + dot(r.gradient, away)), noise = r.drift * (abs(away.x) + abs(away.y));
-    return g > b.g && occ.light.w - occ.light.z * g > 0.0 && (band < 0.0 || ss_is_off_plane(r, height, band + noise));
+    const bool nearer = g > b.g, before_light = occ.light.w - occ.light.z * g > 0.0;
+    const bool off_plane = ss_is_off_plane(r, height, band + noise);
+    return nearer && before_light && off_plane;
 }
 
 struct vertex
@@ -154,7 +156,7 @@ void main()
     const ss_samples samples = ss_receiver_samples(r, g_hi);
     float band;
     const back_projection b = back_project_from(r, ss_biased(r, samples.level, band));
-    const bool disc = (occ.size.w & SS_FLAG_DISC) != 0u;
+    const bool disc = (ss_flags & SS_FLAG_DISC) != 0u;
     float mask_occlusion = 0.0, area_occlusion = 0.0;
     ss_mask_clear();
     ss_area = 0.0;

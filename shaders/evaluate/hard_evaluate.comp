@@ -20,11 +20,8 @@ void main()
     bool dark = r.valid && r.away;
     const ivec2 texel = ivec2(clamp(floor(r.uv), vec2(0.0), vec2(occ.size.xy) - 1.0));
     const vec2 to_centre = vec2(texel) + 0.5 - r.uv;
-    float g = r.g + dot(r.gradient, to_centre) + r.eta + 0.5 * (abs(r.gradient.x) + abs(r.gradient.y));
-    if ((frame.tiles.w & SS_FLAG_OVERRIDE_BIAS) != 0u) {
-        const float b = frame.bias.x;
-        g = (occ.size.w & SS_FLAG_ORTHOGRAPHIC) != 0u ? r.g + b : (b * r.g < 1.0 ? r.g / (1.0 - b * r.g) : 3e38);
-    }
+    const float planar = r.g + dot(r.gradient, to_centre) + r.eta + 0.5 * (abs(r.gradient.x) + abs(r.gradient.y));
+    const float g = (ss_flags & SS_FLAG_OVERRIDE_BIAS) != 0u ? ss_shifted(r.g) : planar;
     for (uint layer = 0u; layer < ss_layers(); layer++) {
         const float occluder = ss_load_fan_depth(layer, texel);
         dark = dark || (r.valid && occluder > g && occ.light.w - occ.light.z * occluder > 0.0);

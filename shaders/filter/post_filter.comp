@@ -22,7 +22,7 @@ bool load_values(ivec2 pixel, out vec2 values)
     if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, frame.area.zw)))
         return false;
     const float depth = texelFetch(camera_depth, frame.area.xy + pixel, 0).x;
-    if (!(frame.quality.w != 0u ? depth > 0.0 : depth < 1.0))
+    if (!((ss_flags & SS_FLAG_REVERSED) != 0u ? depth > 0.0 : depth < 1.0))
         return false;
     const uint state = tiles[uint(pixel.y / SS_TILE_Y) * frame.tiles.x + uint(pixel.x / SS_TILE_X)];
     const uint i = ss_filter_index(pixel);

@@ -83,19 +83,17 @@ ss_samples ss_kernel_samples(vec4 box)
 // patch is flat where the surface rises through it; a quad's vertices lie on the surface, up to noise.
 const float SS_BAND = SS_IS_PATCH ? 0.5 : 0.05;
 
-// The fan depth occluders are compared with, and that thickness (negative: none): docs/numerics.md, section 3, bias.
+const float SS_NO_BAND = -3e38;
+
+// The fan depth occluders are compared with, and that thickness (SS_NO_BAND: nothing is left out): docs/numerics.md, section 3.
 float ss_biased(ss_receiver r, uint level, out float band)
 {
-    band = -1.0;
-    if ((frame.tiles.w & SS_FLAG_OVERRIDE_BIAS) != 0u) {
-        const float b = frame.bias.x;
-        return (occ.size.w & SS_FLAG_ORTHOGRAPHIC) != 0u ? r.g + b : (b * r.g < 1.0 ? r.g / (1.0 - b * r.g) : 3e38);
-    }
     const float slope = abs(r.gradient.x) + abs(r.gradient.y), t = float(1u << level);
-    band = r.eta + SS_BAND * slope * t;
     // The nearest depth of a block lifts the whole plane by as much as it rises from the block's centre.
     const float lift = SS_IS_PATCH || SS_SAMPLED ? 0.0 : 0.5 * slope * (t - 1.0);
-    return r.g + r.eta + lift;
+    const bool overridden = (ss_flags & SS_FLAG_OVERRIDE_BIAS) != 0u;
+    band = overridden ? SS_NO_BAND : r.eta + SS_BAND * slope * t;
+    return overridden ? ss_shifted(r.g) : r.g + r.eta + lift;
 }
 
 // Whether a sample at height `height` over the receiver's plane is part of something else.
@@ -150,9 +148,9 @@ ss_kernel ss_find_kernel(ss_receiver r, float g_hi)
         const ivec2 size = k.samples.texel_hi - k.samples.texel_lo;
         if (!(range.y > g))
             k.state = SS_STATE_LIT;
-        else if (k.samples.covered && range.x > (band >= 0.0 ? g + rise + band : g) && occ.light.z * range.y < occ.light.w)
+        else if (k.samples.covered && range.x > g + max(rise + band, 0.0) && occ.light.z * range.y < occ.light.w)
             k.state = SS_STATE_UMBRA;
-        else if (max(size.x, size.y) <= 2 && (frame.tiles.w & SS_FLAG_OVERRIDE_BIAS) == 0u &&
+        else if (max(size.x, size.y) <= 2 && (ss_flags & SS_FLAG_OVERRIDE_BIAS) == 0u &&
                  !(range.y > g + rise + ss_slack(r.g)))
             k.state = SS_STATE_LIT; // a few texels that all lie under the receiver's own plane
         g_hi = min(g_hi, range.y);

@@ -22,7 +22,7 @@ struct ss_receiver
 bool ss_is_receiver(float depth)
 {
     // Written so that NaN is no receiver.
-    return frame.quality.w != 0u ? depth > 0.0 : depth < 1.0;
+    return (ss_flags & SS_FLAG_REVERSED) != 0u ? depth > 0.0 : depth < 1.0;
 }
 
 // Homogeneous map coordinates (u w, v w, g w, w) of a point of the render area; `at` counts pixels from its corner.
@@ -34,7 +34,7 @@ vec4 ss_to_map(vec2 at, float depth)
 
 bool ss_is_in_front(vec4 h)
 {
-    return h.w > 0.0 && ((occ.size.w & SS_FLAG_ORTHOGRAPHIC) != 0u || h.z > 0.0);
+    return h.w > 0.0 && ((ss_flags & SS_FLAG_ORTHOGRAPHIC) != 0u || h.z > 0.0);
 }
 
 float ss_load_depth(ivec2 pixel)
@@ -57,13 +57,21 @@ float ss_eta(vec4 h, vec2 gradient)
 float ss_slack(float g)
 {
     const float texel = 0.5 * (occ.depths.y + occ.depths.z);
-    return 0.5 * texel * ((occ.size.w & SS_FLAG_ORTHOGRAPHIC) != 0u ? 1.0 : abs(g));
+    return 0.5 * texel * ((ss_flags & SS_FLAG_ORTHOGRAPHIC) != 0u ? 1.0 : abs(g));
+}
+
+// A receiver's fan depth after the caller's bias, in world units.
+float ss_shifted(float g)
+{
+    const float b = frame.bias.x;
+    const float perspective = b * g < 1.0 ? g / (1.0 - b * g) : 3e38;
+    return (ss_flags & SS_FLAG_ORTHOGRAPHIC) != 0u ? g + b : perspective;
 }
 
 vec2 ss_clamp_gradient(vec2 gradient, float g)
 {
     const float tan_limit = 114.0; // tan 89.5 degrees
-    const float scale = (occ.size.w & SS_FLAG_ORTHOGRAPHIC) != 0u ? 1.0 : abs(g);
+    const float scale = (ss_flags & SS_FLAG_ORTHOGRAPHIC) != 0u ? 1.0 : abs(g);
     const vec2 limit = tan_limit * scale * occ.depths.yz;
     return vec2(abs(gradient.x) < 1e30 ? clamp(gradient.x, -limit.x, limit.x) : 0.0,
                 abs(gradient.y) < 1e30 ? clamp(gradient.y, -limit.y, limit.y) : 0.0);
@@ -119,7 +127,7 @@ vec2 ss_gradient_from_normal(vec3 n, vec3 here, out bool away)
     const float den = occ.light.w - occ.light.z * here.z;
     const vec2 d = (occ.light.xy - occ.light.z * here.xy) / den;
     const vec2 spread = vec2(abs(bc * occ.a.x + ca * occ.a.z), abs(bc * occ.a.y + ca * occ.a.w)) / den;
-    const float widest = (occ.size.w & SS_FLAG_DISC) != 0u ? length(spread) : spread.x + spread.y;
+    const float widest = (ss_flags & SS_FLAG_DISC) != 0u ? length(spread) : spread.x + spread.y;
     const float reach = frame.normal_map[0].w * (ab + bc * d.x + ca * d.y) + widest;
     away = reach <= 0.0;
     return vec2(-bc / ab, -ca / ab);

@@ -89,6 +89,7 @@ typedef struct ss_ivec4 {
 #define SS_FLAG_ORTHOGRAPHIC 1u
 #define SS_FLAG_DISC 2u
 #define SS_FLAG_OVERRIDE_BIAS 4u
+#define SS_FLAG_REVERSED 8u /* the camera's depth */
 
 /* The light and its maps in map space: docs/numerics.md, sections 1 and 2. */
 SS_STRUCT(ss_occluders)
@@ -98,7 +99,7 @@ SS_STRUCT(ss_occluders)
     SS_VEC4 light;       /* U.x, U.y, delta, epsilon */
     SS_VEC4 depths;      /* map's part of eta; tangent (or world size) of a texel in u, v; fan depth of the far plane */
     SS_VEC4 extent;      /* half side of the square that areas are clipped to; 1 / its area; unused */
-    SS_UVEC4 size;       /* width, height, layers, SS_FLAG_* */
+    SS_UVEC4 size;       /* width, height, layers; unused */
     SS_UVEC4 levels;     /* top of the pyramid, join level, wide levels allocated, unused */
     SS_UVEC4 strides;    /* texels per layer: fan depth, pyramid; unused */
     SS_UVEC4 unused[8]; /* ss_plan begins at a multiple of every offset alignment */
@@ -122,8 +123,9 @@ SS_STRUCT(ss_frame)
     SS_VEC4 camera;        /* far depth; ndc per pixel in x, y; camera's rho */
     SS_VEC4 bias;          /* override in world units; unused */
     SS_IVEC4 area;         /* render area: x, y, width, height */
-    SS_UVEC4 tiles;        /* tiles in x, y, their number, SS_FLAG_* */
-    SS_UVEC4 quality;      /* budget (0: none), least level, row length of the filter values, 1 if depth is reversed */
+    SS_UVEC4 tiles;        /* tiles in x, y, their number; unused */
+    SS_UVEC4 quality;      /* budget (0: none), least level, pixels in the render area; unused */
+    SS_UVEC4 flags[2];     /* [0].x: SS_FLAG_*; [1] unused */
 }
 SS_STRUCT_END(ss_frame);
 
