@@ -261,8 +261,11 @@ softsh_result softshi_camera_space_create(const softsh_context *context, const s
             rows[r][c] = 0.0;
             for (int k = 0; k < 4; k++)
                 rows[r][c] += map->rows[r][k] * inverse[4 * c + k];
-            largest = fmax(largest, fabs(rows[r][c]));
         }
+        /* Counted from the far plane depth has no digits to lose there, where w is least. */
+        rows[r][3] += depth.far_depth * rows[r][2];
+        for (int c = 0; c < 4; c++)
+            largest = fmax(largest, fabs(rows[r][c]));
     }
     if (!(largest > 0.0) || !isfinite(largest))
         return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_camera: its matrices overflow together with the map's");

@@ -77,7 +77,7 @@ tile_bounds bound(ivec2 corner, tile_depth d)
     // Homogeneous map coordinates are affine in the pixel and the depth: one corner, and the steps to the others.
     const mat4 to_map = mat4(frame.to_map[0], frame.to_map[1], frame.to_map[2], frame.to_map[3]);
     const vec2 side = vec2(SS_TILE_X - 1, SS_TILE_Y - 1);
-    const vec4 origin = vec4((vec2(corner) + 0.5) * frame.camera.yz - 1.0, d.first + d.residual.x, 1.0) * to_map;
+    const vec4 origin = vec4((vec2(corner) + 0.5) * frame.camera.yz - 1.0, d.first - frame.camera.x + d.residual.x, 1.0) * to_map;
     const vec4 along_x = vec4(side.x * frame.camera.y, 0.0, side.x * d.step.x, 0.0) * to_map;
     const vec4 along_y = vec4(0.0, side.y * frame.camera.z, side.y * d.step.y, 0.0) * to_map;
     const vec4 across = vec4(0.0, 0.0, d.residual.y - d.residual.x, 0.0) * to_map;

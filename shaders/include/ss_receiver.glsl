@@ -28,7 +28,7 @@ bool ss_is_receiver(float depth)
 // Homogeneous map coordinates (u w, v w, g w, w) of a point of the render area; `at` counts pixels from its corner.
 vec4 ss_to_map(vec2 at, float depth)
 {
-    const vec4 p = vec4(at * frame.camera.yz - 1.0, clamp(depth, 0.0, 1.0), 1.0);
+    const vec4 p = vec4(at * frame.camera.yz - 1.0, clamp(depth, 0.0, 1.0) - frame.camera.x, 1.0);
     return vec4(dot(frame.to_map[0], p), dot(frame.to_map[1], p), dot(frame.to_map[2], p), dot(frame.to_map[3], p));
 }
 

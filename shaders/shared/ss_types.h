@@ -118,7 +118,7 @@ SS_STRUCT_END(ss_plan);
 /* One visibility call: the receiver side. */
 SS_STRUCT(ss_frame)
 {
-    SS_VEC4 to_map[4];     /* rows: (ndc x, ndc y, depth, 1) -> homogeneous u, v, g, w */
+    SS_VEC4 to_map[4];     /* rows: (ndc x, ndc y, depth - far depth, 1) -> homogeneous u, v, g, w */
     SS_VEC4 normal_map[4]; /* xyz: rows of d(u w, v w, g w, w)/d(world); [0].w: sign of their orientation */
     SS_VEC4 camera;        /* far depth; ndc per pixel in x, y; camera's rho */
     SS_VEC4 bias;          /* override in world units; unused */
