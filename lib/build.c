@@ -91,7 +91,8 @@ static void fill_header(const softsh_occluders *o, const softsh_build_info *info
     /* The square of the disc's area stands in for it where areas are accumulated. */
     out->extent.x = light->disc ? 0.886226925f : 1.0f;
     out->size = (ss_uvec4){plan->extent.width, plan->extent.height, info->map_count, 0};
-    out->levels = (ss_uvec4){plan->layout.top, plan->layout.join, o->layout.wide_levels, 0};
+    out->levels = (ss_uvec4){plan->layout.top, plan->layout.join, o->layout.wide_levels,
+                             plan->layout.wide_levels};
     out->strides = (ss_uvec4){plan->extent.width * plan->extent.height, plan->layout.pyramid_texels, 0, 0};
     for (uint32_t i = 1; i <= plan->layout.top; i++)
         out->pyramid[i] = (ss_uvec4){plan->layout.offsets[i], softshi_level_size(plan->extent.width, i), 0, 0};

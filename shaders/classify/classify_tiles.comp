@@ -150,7 +150,7 @@ uint classify(tile_bounds t, inout float g_hi, inout uint nodes)
         return SS_STATE_LIT;
     const bool biased = (ss_flags & SS_FLAG_OVERRIDE_BIAS) != 0u;
     uint state = SS_STATE_PIXELS;
-    for (int i = 0; i < SS_MAX_REFINEMENTS && state == SS_STATE_PIXELS; i++) {
+    for (int i = 0; i < SS_TILE_REFINEMENTS && state == SS_STATE_PIXELS; i++) {
         const ss_samples s = ss_kernel_samples(ss_kernel_box(t.lo, t.hi, t.g_lo, den, g_hi));
         vec2 range = vec2(-3e38);
         for (uint layer = 0u; layer < ss_layers(); layer++)

@@ -39,9 +39,9 @@ void main()
     if (!(texels <= map_side))
         texels = map_side;
     const uint cells = (uint(ceil(texels)) >> occ.levels.y) + 2u;
-    const uint wanted = min(uint(findMSB(cells)), occ.levels.z);
+    const uint wanted = min(uint(findMSB(cells)), occ.levels.w);
     const uvec2 size = (occ.size.xy + (1u << occ.levels.y) - 1u) >> occ.levels.y;
     for (uint i = 0u; i < SS_MAX_LEVELS; i++)
         plan.args[i] = i < wanted ? uvec4((size + uvec2(31u, 3u)) / uvec2(32u, 4u), 1u, 0u) : uvec4(0u, 1u, 1u, 0u);
-    plan.built = uvec4(wanted, occ.levels.z - wanted, 0u, 0u);
+    plan.built = uvec4(wanted, occ.levels.w - wanted, 0u, 0u);
 }

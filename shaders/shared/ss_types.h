@@ -76,6 +76,7 @@ typedef struct ss_ivec4 {
 #define SS_TILE_PIXELS 64
 #define SS_EVALUATE_GROUP 64
 #define SS_MAX_LEVELS 16 /* levels of a 32768 texel map */
+#define SS_TILE_REFINEMENTS 2 /* of kernels: a third pays for pixels only */
 #define SS_MAX_REFINEMENTS 3
 /* Words per tile in the tiles buffer: state, undecided list (tile, nearest occluder), and scratch that holds the bounds of
  * the tile's columns first and the active list (pixel, nearest occluder) later. */
@@ -100,7 +101,7 @@ SS_STRUCT(ss_occluders)
     SS_VEC4 depths;      /* map's part of eta; tangent (or world size) of a texel in u, v; fan depth of the far plane */
     SS_VEC4 extent;      /* half side of the square that areas are clipped to; 1 / its area; unused */
     SS_UVEC4 size;       /* width, height, layers; unused */
-    SS_UVEC4 levels;     /* top of the pyramid, join level, wide levels allocated, unused */
+    SS_UVEC4 levels;     /* top of the pyramid, join level, wide levels allocated, of this map */
     SS_UVEC4 strides;    /* texels per layer: fan depth, pyramid; unused */
     SS_UVEC4 unused[8]; /* ss_plan begins at a multiple of every offset alignment */
     SS_UVEC4 pyramid[SS_MAX_LEVELS]; /* per level: first texel, width; level 0 and the rest unused */
