@@ -153,10 +153,12 @@ static void check_difference(const stage *s, const softsh_settings *settings, bo
     bool allowed = false;
 
     if (h == 1.0f) {
-        /* Below the plane's highest point over 4 texels; a tile's plane may be one texel's rise below its pixels'. */
+        /* Section 8: at most two texels' rise and slack above the plane at a cell's centre, or as much as the plane
+         * rises over 4 texels; a tile's plane may lie that much below its pixels'. */
+        const double slack = 0.5 * fmax(s->map.texel[0], s->map.texel[1]) * (s->map.perspective ? r->uvg[2] : 1.0);
         t->lit++;
         t->lit_by = fmax(t->lit_by, (double)(h - n));
-        allowed = !s->options.override_bias && c.highest <= 5.0 * (slope + r->eta);
+        allowed = !s->options.override_bias && c.highest <= 5.5 * slope + 2.0 * slack + 4.0 * r->eta;
     } else if (h == 0.0f) {
         /* All of the kernel lies above the plane; gaps between primitives and rounding are all that is lost. */
         t->umbra++;

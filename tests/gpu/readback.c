@@ -6,6 +6,7 @@
 
 #include "occluders.h"
 #include "read_wide.comp.h"
+#include "view.h"
 
 static_assert(sizeof(reference_range) == 8, "a range is what the device calls a vec2");
 
@@ -186,4 +187,9 @@ reference_range readback_wide(const readback *r, uint32_t layer, uint32_t level,
 {
     const size_t slice = (size_t)layer * r->wide_allocated + level - 1;
     return r->wide[(slice * r->wide_height + y) * r->wide_width + x];
+}
+
+void sight_set_level(sight *s, uint32_t level)
+{
+    s->view->settings.min_level = level;
 }

@@ -1,4 +1,4 @@
-/* What an occluders object holds on the device, through the library's internal headers. */
+/* What only the library's internal headers reach: what objects hold on the device, and settings of views that exist. */
 #ifndef READBACK_H
 #define READBACK_H
 
@@ -21,5 +21,9 @@ void readback_destroy(readback *r);
  */
 reference_range readback_pyramid(const readback *r, uint32_t layer, uint32_t level, uint32_t x, uint32_t y);
 reference_range readback_wide(const readback *r, uint32_t layer, uint32_t level, uint32_t x, uint32_t y);
+
+/* Another least level for a view that was made with one: levels are no part of its pipelines, which are slow to make.
+ */
+void sight_set_level(sight *s, uint32_t level);
 
 #endif
