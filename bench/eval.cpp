@@ -19,14 +19,16 @@ struct Options {
 
 void print_help()
 {
-    std::printf("softshadow-eval CASE_DIR [--technique T] [--set K=V ...] [--repeat N] [--out DIR] [--json FILE]\n"
-                "                [--against T] [--device N|NAME]\n\n"
-                "Runs one technique (default: auto) on a case: a folder with case.json and depth buffers as EXR files.\n"
-                "Prints error against the case's truth and the median time of N runs (default 5; 0: one, not timed).\n"
-                "--out writes visibility.exr, visibility.png and, with a truth, error.png (0 to 0.5); --json the row.\n"
-                "--against times a second technique (without settings) in turn with the first and prints the ratio of the times\n"
-                "that do not include the build.\n\n%s",
-                technique_help().c_str());
+    std::printf(
+        "softshadow-eval CASE_DIR [--technique T] [--set K=V ...] [--repeat N] [--out DIR] [--json FILE]\n"
+        "                [--against T] [--device N|NAME]\n\n"
+        "Runs one technique (default: auto) on a case: a folder with case.json and depth buffers as EXR files.\n"
+        "Prints error against the case's truth and the median time of N runs (default 5; 0: one, not timed).\n"
+        "--out writes visibility.exr, visibility.png and, with a truth, error.png (0 to 0.5); --json the row.\n"
+        "--against times a second technique (without settings) in turn with the first and prints the ratio of the "
+        "times\n"
+        "that do not include the build.\n\n%s",
+        technique_help().c_str());
 }
 
 [[noreturn]] void usage_error(const char *text)
@@ -102,8 +104,8 @@ void print_ratio(const Row &row, Row other, const std::vector<RunTimes> &runs)
 {
     add_times(other, runs);
     std::printf("%s %.3f ms / %s %.3f ms = %.2f (medians of %zu, in turn, without the build)\n",
-                describe(row.technique).c_str(), row.visibility_ms, describe(other.technique).c_str(), other.visibility_ms,
-                row.visibility_ms / other.visibility_ms, runs.size());
+                describe(row.technique).c_str(), row.visibility_ms, describe(other.technique).c_str(),
+                other.visibility_ms, row.visibility_ms / other.visibility_ms, runs.size());
 }
 
 void run(const Options &o, gpu &g)
@@ -124,7 +126,8 @@ void run(const Options &o, gpu &g)
         row.error = measure_error(result, *data.truth, data.mask ? &*data.mask : nullptr);
     if (o.repeat > 0) {
         const auto timed = make_estimator(g, device_case, technique, false);
-        const auto other = o.against.empty() ? nullptr : make_estimator(g, device_case, parse_technique(o.against, {}), false);
+        const auto other =
+            o.against.empty() ? nullptr : make_estimator(g, device_case, parse_technique(o.against, {}), false);
         timed->run(); // code is generated at the first dispatch
         if (other)
             other->run();

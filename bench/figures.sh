@@ -2,8 +2,7 @@
 # The figures of the papers that the library can be held against, one section each:
 #     bench/figures.sh [BUILD_DIR]
 # build: time and memory of HSM, MSSM and YSM over the map's size; order: errors of patterns, primitives, layers and the post
-# filter; lit: what a scene without shadow costs against a pass that reads depth and writes visibility; unchanged: what an
-# unchanged map costs.
+# filter; lit: what a scene without shadow costs against a pass that reads depth and writes visibility.
 set -eu
 cd "$(dirname "$0")/.."
 build=${1:-build/ci}

@@ -9,7 +9,7 @@
 
 typedef struct build_plan {
     VkExtent2D extent;
-    softshi_occluder_layout layout; /* of the maps' extent */
+    softshi_occluder_layout layout;            /* of the maps' extent */
     softshi_map_space maps[SOFTSH_MAX_LAYERS]; /* in the order given */
     softshi_light_space light;
 } build_plan;
@@ -26,8 +26,9 @@ static softsh_result check_same_projection(const softsh_context *context, const 
             difference = fmax(difference, fabs(a->rows[r][c] - b->rows[r][c]));
         }
         if (a->orthographic != b->orthographic || !(difference <= 1e-6 * largest))
-            return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT,
-                                "softsh_map[%u] has another projection than softsh_map[0], expected layers of one projection", i);
+            return softshi_fail(
+                context, SOFTSH_ERROR_INVALID_ARGUMENT,
+                "softsh_map[%u] has another projection than softsh_map[0], expected layers of one projection", i);
     }
     return SOFTSH_SUCCESS;
 }
@@ -48,7 +49,8 @@ static softsh_result plan_build(const softsh_occluders *o, const softsh_build_in
         return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_build_info::struct_size is %u, expected %u",
                             info->struct_size, (unsigned)sizeof *info);
     if (!o->block.ready)
-        return softshi_fail(context, SOFTSH_ERROR_STATE, "softsh_cmd_build_occluders: no memory is bound to the occluders");
+        return softshi_fail(context, SOFTSH_ERROR_STATE,
+                            "softsh_cmd_build_occluders: no memory is bound to the occluders");
     softsh_result result = softshi_check_light(context, info->light);
     if (result == SOFTSH_SUCCESS)
         result = softshi_check_maps(context, info->maps, info->map_count, o->max_extent, o->max_layers, &plan->extent);
@@ -70,7 +72,8 @@ static softsh_result plan_build(const softsh_occluders *o, const softsh_build_in
     return result;
 }
 
-static void fill_header(const softsh_occluders *o, const softsh_build_info *info, const build_plan *plan, ss_occluders *out)
+static void fill_header(const softsh_occluders *o, const softsh_build_info *info, const build_plan *plan,
+                        ss_occluders *out)
 {
     const softshi_light_space *light = &plan->light;
     const softshi_map_space *map = &plan->maps[0];
@@ -91,8 +94,7 @@ static void fill_header(const softsh_occluders *o, const softsh_build_info *info
     /* The square of the disc's area stands in for it where areas are accumulated. */
     out->extent.x = light->disc ? 0.886226925f : 1.0f;
     out->size = (ss_uvec4){plan->extent.width, plan->extent.height, info->map_count, 0};
-    out->levels = (ss_uvec4){plan->layout.top, plan->layout.join, o->layout.wide_levels,
-                             plan->layout.wide_levels};
+    out->levels = (ss_uvec4){plan->layout.top, plan->layout.join, o->layout.wide_levels, plan->layout.wide_levels};
     out->strides = (ss_uvec4){plan->extent.width * plan->extent.height, plan->layout.pyramid_texels, 0, 0};
     for (uint32_t i = 1; i <= plan->layout.top; i++)
         out->pyramid[i] = (ss_uvec4){plan->layout.offsets[i], softshi_level_size(plan->extent.width, i), 0, 0};
@@ -117,7 +119,8 @@ softsh_result softsh_cmd_build_occluders(VkCommandBuffer cmd, softsh_occluders *
     if (!o)
         return SOFTSH_ERROR_INVALID_ARGUMENT;
     if (!cmd)
-        return softshi_fail(o->context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_cmd_build_occluders: cmd is VK_NULL_HANDLE");
+        return softshi_fail(o->context, SOFTSH_ERROR_INVALID_ARGUMENT,
+                            "softsh_cmd_build_occluders: cmd is VK_NULL_HANDLE");
     build_plan plan;
     const softsh_result result = plan_build(o, info, &plan);
     if (result != SOFTSH_SUCCESS)
@@ -129,7 +132,8 @@ softsh_result softsh_cmd_build_occluders(VkCommandBuffer cmd, softsh_occluders *
     softshi_record_begin(&recorder, o->context, cmd, info->timestamps, o->name);
     recorder.sets[SS_SET_OCCLUDERS] = o->set;
     softshi_record_update(&recorder, SOFTSHI_HEADER, o->block.buffer, o->layout.header.offset, &header, sizeof header);
-    softshi_record_discard_image(&recorder, o->block.image, o->layout.wide_levels ? o->layout.wide_levels * o->max_layers : 1);
+    softshi_record_discard_image(&recorder, o->block.image,
+                                 o->layout.wide_levels ? o->layout.wide_levels * o->max_layers : 1);
     for (uint32_t i = 0; i < info->map_count; i++) {
         const softsh_map *map = &info->maps[i];
         recorder.sets[SS_SET_IO] = o->io_sets[o->next_io_set];

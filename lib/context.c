@@ -82,9 +82,12 @@ static VkResult create_set_layout(softsh_context *context, const VkDescriptorTyp
 static VkResult create_layouts(softsh_context *context)
 {
     static const VkDescriptorType occluders[SS_OCCLUDER_BINDINGS] = {
-        [SS_BIND_OCCLUDERS] = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, [SS_BIND_FAN_DEPTH] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-        [SS_BIND_PYRAMID] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,   [SS_BIND_WIDE] = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,
-        [SS_BIND_WIDE_OUT] = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,   [SS_BIND_PLAN] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+        [SS_BIND_OCCLUDERS] = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
+        [SS_BIND_FAN_DEPTH] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+        [SS_BIND_PYRAMID] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+        [SS_BIND_WIDE] = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,
+        [SS_BIND_WIDE_OUT] = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
+        [SS_BIND_PLAN] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
     };
     static const VkDescriptorType io[SS_IO_BINDINGS] = {
         [SS_BIND_DEPTH] = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,      [SS_BIND_NORMALS] = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,
@@ -92,7 +95,8 @@ static VkResult create_layouts(softsh_context *context)
         [SS_BIND_CONTROL] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,   [SS_BIND_TILES] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
         [SS_BIND_FILTER] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
     };
-    VkResult result = create_set_layout(context, occluders, SS_OCCLUDER_BINDINGS, &context->set_layouts[SS_SET_OCCLUDERS]);
+    VkResult result =
+        create_set_layout(context, occluders, SS_OCCLUDER_BINDINGS, &context->set_layouts[SS_SET_OCCLUDERS]);
     if (result == VK_SUCCESS)
         result = create_set_layout(context, io, SS_IO_BINDINGS, &context->set_layouts[SS_SET_IO]);
     if (result != VK_SUCCESS)
@@ -118,8 +122,8 @@ static softsh_result initialize(softsh_context *context, const softsh_context_in
         return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT,
                             "softsh_context_info: the proc-addr functions do not know %s", missing);
     softsh_requirements requirements = {.struct_size = sizeof requirements};
-    const softsh_result known = softsh_get_requirements(info->get_instance_proc_addr, info->instance,
-                                                        info->physical_device, &requirements);
+    const softsh_result known =
+        softsh_get_requirements(info->get_instance_proc_addr, info->instance, info->physical_device, &requirements);
     if (known != SOFTSH_SUCCESS)
         return softshi_fail(context, known, "softsh_context_info::physical_device: its properties cannot be read");
     if (!requirements.supported)

@@ -59,8 +59,8 @@ void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_
 
 void softshi_layout_view(VkExtent2D extent, bool filter, softshi_view_layout *out)
 {
-    const VkDeviceSize tiles = (VkDeviceSize)((extent.width + SS_TILE_X - 1) / SS_TILE_X) *
-                               ((extent.height + SS_TILE_Y - 1) / SS_TILE_Y);
+    const VkDeviceSize tiles =
+        (VkDeviceSize)((extent.width + SS_TILE_X - 1) / SS_TILE_X) * ((extent.height + SS_TILE_Y - 1) / SS_TILE_Y);
     VkDeviceSize end = 0;
     out->frame = append(&end, sizeof(ss_frame));
     out->control = append(&end, sizeof(ss_control));

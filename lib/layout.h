@@ -16,11 +16,11 @@ uint32_t softshi_level_size(uint32_t texels, uint32_t level);
 typedef struct softshi_occluder_layout {
     softshi_range header, fan_depth, pyramid; /* in the buffer */
     VkDeviceSize buffer_size;
-    uint32_t top;                 /* levels above level 0 */
-    uint32_t pyramid_texels;      /* per layer */
+    uint32_t top;            /* levels above level 0 */
+    uint32_t pyramid_texels; /* per layer */
     uint32_t offsets[SS_MAX_LEVELS];
-    uint32_t join;                /* pyramid level the wide part starts from; `top` without one */
-    uint32_t wide_levels;         /* 0 without a wide part */
+    uint32_t join;        /* pyramid level the wide part starts from; `top` without one */
+    uint32_t wide_levels; /* 0 without a wide part */
     VkExtent2D wide_extent;
 } softshi_occluder_layout;
 

@@ -13,8 +13,8 @@ static void normalize(double v[3])
         v[i] /= length;
 }
 
-softsh_result softsh_light_frustum_create(const softsh_light *light, const double target[3], double radius, double behind,
-                                          softsh_light_frustum *out)
+softsh_result softsh_light_frustum_create(const softsh_light *light, const double target[3], double radius,
+                                          double behind, softsh_light_frustum *out)
 {
     if (!light || light->struct_size != sizeof *light || !target || !out || out->struct_size != sizeof *out)
         return SOFTSH_ERROR_INVALID_ARGUMENT;
@@ -23,9 +23,9 @@ softsh_result softsh_light_frustum_create(const softsh_light *light, const doubl
     if (light->shape != SOFTSH_LIGHT_RECTANGLE)
         return SOFTSH_ERROR_UNSUPPORTED;
     if (!softshi_all_finite(light->center, 3) || !softshi_all_finite(light->half_u, 3) ||
-        !softshi_all_finite(light->half_v, 3) || !softshi_all_finite(target, 3) || !(radius > 0.0 && radius < HUGE_VAL) ||
-        !(behind >= 0.0 && behind < HUGE_VAL) || !(softshi_length3(light->half_u) > 0.0) ||
-        !(softshi_length3(light->half_v) > 0.0))
+        !softshi_all_finite(light->half_v, 3) || !softshi_all_finite(target, 3) ||
+        !(radius > 0.0 && radius < HUGE_VAL) || !(behind >= 0.0 && behind < HUGE_VAL) ||
+        !(softshi_length3(light->half_u) > 0.0) || !(softshi_length3(light->half_v) > 0.0))
         return SOFTSH_ERROR_INVALID_ARGUMENT;
     double right[3], down[3], forward[3], to_target[3];
     memcpy(right, light->half_u, sizeof right);
@@ -54,7 +54,9 @@ softsh_result softsh_light_frustum_create(const softsh_light *light, const doubl
     const double distance = softshi_dot3(forward, to_target);
     offset[0] = fabs(softshi_dot3(right, to_target));
     offset[1] = fabs(softshi_dot3(down, to_target));
-    const double nearest = behind > 0.0 ? behind : distance - radius > 0.01 * radius ? distance - radius : 0.01 * radius;
+    const double nearest = behind > 0.0                        ? behind
+                           : distance - radius > 0.01 * radius ? distance - radius
+                                                               : 0.01 * radius;
     if (!(distance > nearest))
         return SOFTSH_ERROR_INVALID_ARGUMENT;
     /* The cone that touches the sphere, widened by the target's offset from the axis. */

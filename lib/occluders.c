@@ -23,10 +23,12 @@ static softsh_result check_limits(const softsh_context *context, const softsh_oc
                                 (unsigned long long)(context->limits.maxStorageBufferRange >> 20));
     const uint32_t image_layers = o->layout.wide_levels * o->max_layers;
     if (o->layout.wide_extent.width > context->limits.maxImageDimension2D ||
-        o->layout.wide_extent.height > context->limits.maxImageDimension2D || image_layers > context->limits.maxImageArrayLayers)
-        return softshi_fail(context, SOFTSH_ERROR_LIMIT,
-                            "softsh_occluders_info: full-resolution levels of %u x %u x %u exceed the device's image limits",
-                            o->layout.wide_extent.width, o->layout.wide_extent.height, image_layers);
+        o->layout.wide_extent.height > context->limits.maxImageDimension2D ||
+        image_layers > context->limits.maxImageArrayLayers)
+        return softshi_fail(
+            context, SOFTSH_ERROR_LIMIT,
+            "softsh_occluders_info: full-resolution levels of %u x %u x %u exceed the device's image limits",
+            o->layout.wide_extent.width, o->layout.wide_extent.height, image_layers);
     return SOFTSH_SUCCESS;
 }
 
@@ -36,8 +38,9 @@ static softsh_result create_resources(softsh_occluders *o)
     const VkBufferCreateInfo buffer_info = {
         .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
         .size = o->layout.buffer_size,
-        .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
-                 VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+        .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
+                 VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+                 VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
         .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
     };
     VkResult result = context->vk.CreateBuffer(context->device, &buffer_info, context->allocator, &o->block.buffer);
@@ -62,15 +65,17 @@ static softsh_result create_resources(softsh_occluders *o)
     };
     VkImageFormatProperties most;
     result = context->vk.GetPhysicalDeviceImageFormatProperties(context->physical_device, image_info.format,
-                                                                image_info.imageType, image_info.tiling, image_info.usage,
-                                                                0, &most);
+                                                                image_info.imageType, image_info.tiling,
+                                                                image_info.usage, 0, &most);
     if (result != VK_SUCCESS)
         return softshi_fail_vulkan(context, result, "vkGetPhysicalDeviceImageFormatProperties");
-    const VkDeviceSize size = (VkDeviceSize)image_info.extent.width * image_info.extent.height * image_info.arrayLayers * 8;
+    const VkDeviceSize size =
+        (VkDeviceSize)image_info.extent.width * image_info.extent.height * image_info.arrayLayers * 8;
     if (size > most.maxResourceSize)
-        return softshi_fail(context, SOFTSH_ERROR_LIMIT,
-                            "softsh_occluders_info: full-resolution levels take %llu MiB, the device's images at most %llu MiB",
-                            (unsigned long long)(size >> 20), (unsigned long long)(most.maxResourceSize >> 20));
+        return softshi_fail(
+            context, SOFTSH_ERROR_LIMIT,
+            "softsh_occluders_info: full-resolution levels take %llu MiB, the device's images at most %llu MiB",
+            (unsigned long long)(size >> 20), (unsigned long long)(most.maxResourceSize >> 20));
     result = context->vk.CreateImage(context->device, &image_info, context->allocator, &o->block.image);
     if (result != VK_SUCCESS) {
         o->block.image = VK_NULL_HANDLE;
@@ -88,7 +93,8 @@ static softsh_result create_sets(softsh_occluders *o, uint32_t recordings)
     o->io_set_count = recordings * o->max_layers;
     o->io_sets = softshi_host_allocate(context->allocator, o->io_set_count * sizeof *o->io_sets);
     if (!o->io_sets)
-        return softshi_fail(context, SOFTSH_ERROR_OUT_OF_HOST_MEMORY, "no host memory for %u descriptor sets", o->io_set_count);
+        return softshi_fail(context, SOFTSH_ERROR_OUT_OF_HOST_MEMORY, "no host memory for %u descriptor sets",
+                            o->io_set_count);
     const uint32_t n = o->io_set_count;
     const VkDescriptorPoolSize sizes[] = {
         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1 + n},
@@ -169,7 +175,8 @@ static softsh_result finish(softsh_occluders *o)
     return SOFTSH_SUCCESS;
 }
 
-softsh_result softsh_occluders_create(softsh_context *context, const softsh_occluders_info *info, softsh_occluders **out)
+softsh_result softsh_occluders_create(softsh_context *context, const softsh_occluders_info *info,
+                                      softsh_occluders **out)
 {
     if (out)
         *out = NULL;
@@ -233,12 +240,14 @@ softsh_result softsh_occluders_memory_requirements(const softsh_occluders *o, Vk
     if (!o)
         return SOFTSH_ERROR_INVALID_ARGUMENT;
     if (!out)
-        return softshi_fail(o->context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_occluders_memory_requirements: out is NULL");
+        return softshi_fail(o->context, SOFTSH_ERROR_INVALID_ARGUMENT,
+                            "softsh_occluders_memory_requirements: out is NULL");
     *out = o->block.requirements;
     return SOFTSH_SUCCESS;
 }
 
-softsh_result softsh_occluders_bind_memory(softsh_occluders *o, VkDeviceMemory memory, VkDeviceSize offset, VkDeviceSize size)
+softsh_result softsh_occluders_bind_memory(softsh_occluders *o, VkDeviceMemory memory, VkDeviceSize offset,
+                                           VkDeviceSize size)
 {
     if (!o)
         return SOFTSH_ERROR_INVALID_ARGUMENT;

@@ -1,5 +1,5 @@
-/* From matrices and a light to map space: docs/numerics.md, sections 1 to 3. Everything a depth convention can be is read
- * off the matrices here and nowhere else. */
+/* From matrices and a light to map space: docs/numerics.md, sections 1 to 3. Everything a depth convention can be is
+ * read off the matrices here and nowhere else. */
 #include "projection.h"
 
 #include <math.h>
@@ -31,7 +31,8 @@ static bool fits_floats(const double *values, int count)
 }
 
 /* Reads the depth convention off projection * view. */
-static softsh_result read_clip_depth(const softsh_context *context, const double clip[16], const char *field, clip_depth *out)
+static softsh_result read_clip_depth(const softsh_context *context, const double clip[16], const char *field,
+                                     clip_depth *out)
 {
     double r0[4], r1[4], r2[4], r3[4];
     softshi_matrix_row(clip, 0, r0);
@@ -45,8 +46,8 @@ static softsh_result read_clip_depth(const softsh_context *context, const double
         /* Right, down and forward form a right-handed frame, so a reversed depth shows in the orientation. */
         out->far_depth = determinant_sign(r0, r1, r2) >= 0.0 ? 1.0 : 0.0;
         if (!(r3[3] > 0.0))
-            return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "%s::projection: clip w is %g everywhere, expected a positive number",
-                                field, r3[3]);
+            return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT,
+                                "%s::projection: clip w is %g everywhere, expected a positive number", field, r3[3]);
         return SOFTSH_SUCCESS;
     }
     out->alpha = softshi_dot3(r2, r3) / (n * n);
@@ -55,10 +56,13 @@ static softsh_result read_clip_depth(const softsh_context *context, const double
     for (int i = 0; i < 3; i++)
         residual = fmax(residual, fabs(r2[i] - out->alpha * r3[i]));
     if (residual > 1e-5 * n)
-        return softshi_fail(context, SOFTSH_ERROR_UNSUPPORTED,
-                            "%s::projection: depth is not a function of distance (an oblique near plane), which is not supported", field);
+        return softshi_fail(
+            context, SOFTSH_ERROR_UNSUPPORTED,
+            "%s::projection: depth is not a function of distance (an oblique near plane), which is not supported",
+            field);
     if (!(fabs(out->beta) > 0.0))
-        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "%s::projection: every point has the same depth", field);
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "%s::projection: every point has the same depth",
+                            field);
     out->far_depth = out->beta < 0.0 ? 1.0 : 0.0;
     return SOFTSH_SUCCESS;
 }
@@ -67,9 +71,11 @@ static softsh_result clip_matrix(const softsh_context *context, const double vie
                                  const char *field, double clip[16], double inverse[16])
 {
     if (!softshi_all_finite(view, 16))
-        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "%s::view_matrix has an element that is not finite", field);
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "%s::view_matrix has an element that is not finite",
+                            field);
     if (!softshi_all_finite(projection, 16))
-        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "%s::projection has an element that is not finite", field);
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "%s::projection has an element that is not finite",
+                            field);
     if (!softshi_matrix_invert(view, inverse))
         return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "%s::view_matrix is singular", field);
     if (!softshi_matrix_invert(projection, inverse))
@@ -104,7 +110,8 @@ softsh_result softshi_map_space_create(const softsh_context *context, const soft
     }
     if (depth.orthographic) {
         if (light->shape != SOFTSH_LIGHT_DIRECTIONAL)
-            return softshi_fail(context, SOFTSH_ERROR_UNSUPPORTED, "%s: an orthographic map needs a directional light", field);
+            return softshi_fail(context, SOFTSH_ERROR_UNSUPPORTED, "%s: an orthographic map needs a directional light",
+                                field);
         /* Depth per world unit along the axis; g grows against the light's direction. */
         const double axis = softshi_length3(r2), along = softshi_dot3(r2, light->direction);
         const double per_unit = (along < 0.0 ? -axis : axis) / r3[3];
@@ -118,7 +125,8 @@ softsh_result softshi_map_space_create(const softsh_context *context, const soft
         out->normal_sign = determinant_sign(out->rows[0], out->rows[1], out->rows[2]);
     } else {
         if (light->shape == SOFTSH_LIGHT_DIRECTIONAL)
-            return softshi_fail(context, SOFTSH_ERROR_UNSUPPORTED, "%s: a directional light needs an orthographic map", field);
+            return softshi_fail(context, SOFTSH_ERROR_UNSUPPORTED, "%s: a directional light needs an orthographic map",
+                                field);
         const double n = softshi_length3(r3);
         out->far_depth = depth.far_depth;
         out->depth_scale = n / depth.beta;
@@ -138,8 +146,8 @@ softsh_result softshi_map_space_create(const softsh_context *context, const soft
     for (int i = 0; i < 4; i++)
         if (!fits_floats(out->rows[i], 3) || !isfinite(out->rows[i][3]))
             return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "%s: its matrices overflow", field);
-    if (!isfinite(out->texel[0]) || !isfinite(out->texel[1]) || out->normal_sign == 0.0 || !isfinite((float)out->depth_scale) ||
-        !isfinite((float)out->depth_offset))
+    if (!isfinite(out->texel[0]) || !isfinite(out->texel[1]) || out->normal_sign == 0.0 ||
+        !isfinite((float)out->depth_scale) || !isfinite((float)out->depth_offset))
         return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "%s: its matrices are degenerate", field);
     return SOFTSH_SUCCESS;
 }
@@ -149,22 +157,25 @@ static double row_dot(const double row[4], const double v[3], double w)
     return softshi_dot3(row, v) + row[3] * w;
 }
 
-static softsh_result rectangle_space(const softsh_context *context, const softsh_light *light, const softshi_map_space *map,
-                                     softshi_light_space *out)
+static softsh_result rectangle_space(const softsh_context *context, const softsh_light *light,
+                                     const softshi_map_space *map, softshi_light_space *out)
 {
     const double n = softshi_length3(map->rows[3]);
     const double half = fmax(softshi_length3(light->half_u), softshi_length3(light->half_v));
-    const double tilt = fmax(fabs(softshi_dot3(map->rows[3], light->half_u)), fabs(softshi_dot3(map->rows[3], light->half_v)));
+    const double tilt =
+        fmax(fabs(softshi_dot3(map->rows[3], light->half_u)), fabs(softshi_dot3(map->rows[3], light->half_v)));
     if (tilt > 1e-3 * n * half)
-        return softshi_fail(context, SOFTSH_ERROR_UNSUPPORTED,
-                            "softsh_light: its plane is tilted by %.3g rad against the map's image plane, expected parallel planes",
-                            asin(fmin(tilt / (n * half), 1.0)));
+        return softshi_fail(
+            context, SOFTSH_ERROR_UNSUPPORTED,
+            "softsh_light: its plane is tilted by %.3g rad against the map's image plane, expected parallel planes",
+            asin(fmin(tilt / (n * half), 1.0)));
     out->delta = row_dot(map->rows[3], light->center, 1.0) / n;
     out->epsilon = 1.0;
     if (out->delta < -1e-3 * half - 1e-9 * fabs(map->rows[3][3] / n))
-        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT,
-                            "softsh_light::center lies %.6g behind the map's projection centre, expected it at the centre or in front",
-                            -out->delta);
+        return softshi_fail(
+            context, SOFTSH_ERROR_INVALID_ARGUMENT,
+            "softsh_light::center lies %.6g behind the map's projection centre, expected it at the centre or in front",
+            -out->delta);
     const double *axes[2] = {light->half_u, light->half_v};
     for (int i = 0; i < 2; i++) {
         out->u[i] = row_dot(map->rows[i], light->center, 1.0) / n;
@@ -200,7 +211,8 @@ static softsh_result directional_space(const softsh_context *context, const soft
     return SOFTSH_SUCCESS;
 }
 
-/* The light seen in map orientation: swap and mirror its axes until A is as near to a positive diagonal as it can be. */
+/* The light seen in map orientation: swap and mirror its axes until A is as near to a positive diagonal as it can be.
+ */
 static void orient(softshi_light_space *light)
 {
     double(*a)[2] = light->a;
@@ -225,8 +237,8 @@ softsh_result softshi_light_space_create(const softsh_context *context, const so
                                          const softshi_map_space *map, softshi_light_space *out)
 {
     memset(out, 0, sizeof *out);
-    const softsh_result result = map->orthographic ? directional_space(context, light, map, out)
-                                                   : rectangle_space(context, light, map, out);
+    const softsh_result result =
+        map->orthographic ? directional_space(context, light, map, out) : rectangle_space(context, light, map, out);
     if (result != SOFTSH_SUCCESS)
         return result;
     orient(out);
@@ -238,8 +250,8 @@ softsh_result softshi_light_space_create(const softsh_context *context, const so
     if (!fits_floats(out->u, 2) || !fits_floats(&out->delta, 1))
         return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_light::center is too far from the map");
     if (!out->point && (!fits_floats(&out->a[0][0], 4) || side < 1e-12))
-        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_light: its extent is %g texels per unit, expected 1e-12 to 3e38",
-                            side);
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT,
+                            "softsh_light: its extent is %g texels per unit, expected 1e-12 to 3e38", side);
     return SOFTSH_SUCCESS;
 }
 
@@ -248,7 +260,8 @@ softsh_result softshi_camera_space_create(const softsh_context *context, const s
 {
     double clip[16], inverse[16];
     clip_depth depth;
-    softsh_result result = clip_matrix(context, camera->view_matrix, camera->projection, "softsh_camera", clip, inverse);
+    softsh_result result =
+        clip_matrix(context, camera->view_matrix, camera->projection, "softsh_camera", clip, inverse);
     if (result == SOFTSH_SUCCESS)
         result = read_clip_depth(context, clip, "softsh_camera", &depth);
     if (result != SOFTSH_SUCCESS)
@@ -268,7 +281,8 @@ softsh_result softshi_camera_space_create(const softsh_context *context, const s
             largest = fmax(largest, fabs(rows[r][c]));
     }
     if (!(largest > 0.0) || !isfinite(largest))
-        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_camera: its matrices overflow together with the map's");
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT,
+                            "softsh_camera: its matrices overflow together with the map's");
     /* Homogeneous: the common factor is free, and near one no row leaves the range of floats. */
     for (int r = 0; r < 4; r++) {
         for (int c = 0; c < 4; c++) {

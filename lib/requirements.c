@@ -1,6 +1,7 @@
 /* Version, result names, and what a device must offer. */
 #include <softshadow/softshadow.h>
 
+#include <stdbool.h>
 #include <string.h>
 
 uint32_t softsh_version(void)
@@ -51,7 +52,8 @@ softsh_result softsh_get_requirements(PFN_vkGetInstanceProcAddr get_instance_pro
     const PFN_vkGetPhysicalDeviceFeatures get_features =
         (PFN_vkGetPhysicalDeviceFeatures)get_instance_proc_addr(instance, "vkGetPhysicalDeviceFeatures");
     const PFN_vkGetPhysicalDeviceFormatProperties get_format =
-        (PFN_vkGetPhysicalDeviceFormatProperties)get_instance_proc_addr(instance, "vkGetPhysicalDeviceFormatProperties");
+        (PFN_vkGetPhysicalDeviceFormatProperties)get_instance_proc_addr(instance,
+                                                                        "vkGetPhysicalDeviceFormatProperties");
     if (!get_properties || !get_features || !get_format)
         return SOFTSH_ERROR_INVALID_ARGUMENT;
     VkPhysicalDeviceProperties properties;
@@ -61,7 +63,9 @@ softsh_result softsh_get_requirements(PFN_vkGetInstanceProcAddr get_instance_pro
     get_features(physical_device, &features);
     get_format(physical_device, VK_FORMAT_R32G32_SFLOAT, &wide);
     const VkFormatFeatureFlags needed = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
-    out->supported = properties.apiVersion >= VK_API_VERSION_1_1 && features.shaderStorageImageWriteWithoutFormat &&
-                     (wide.optimalTilingFeatures & needed) == needed;
+    /* Fan depth, pyramid and plan; control, tiles and filter values. */
+    const bool enough_buffers = properties.limits.maxPerStageDescriptorStorageBuffers >= 6;
+    out->supported = enough_buffers && properties.apiVersion >= VK_API_VERSION_1_1 &&
+                     features.shaderStorageImageWriteWithoutFormat && (wide.optimalTilingFeatures & needed) == needed;
     return SOFTSH_SUCCESS;
 }

@@ -15,7 +15,7 @@
         if (!(pointer))                                                                                                \
             return INVALID(#type " is NULL");                                                                          \
         if ((pointer)->struct_size != sizeof(type))                                                                    \
-            return INVALID(#type "::struct_size is %u, expected %u", (pointer)->struct_size, (unsigned)sizeof(type)); \
+            return INVALID(#type "::struct_size is %u, expected %u", (pointer)->struct_size, (unsigned)sizeof(type));  \
     } while (0)
 
 softsh_result softshi_check_context_info(softsh_context *context, const softsh_context_info *info, softsh_context **out)
@@ -41,14 +41,16 @@ softsh_result softshi_check_context_info(softsh_context *context, const softsh_c
     if (allocator && (!allocator->pfnAllocation || !allocator->pfnFree || !allocator->pfnReallocation))
         return INVALID("softsh_context_info::allocation_callbacks lacks pfnAllocation, pfnReallocation or pfnFree");
     if (allocator && !allocator->pfnInternalAllocation != !allocator->pfnInternalFree)
-        return INVALID("softsh_context_info::allocation_callbacks has one of pfnInternalAllocation and pfnInternalFree, "
-                       "expected both or none");
+        return INVALID(
+            "softsh_context_info::allocation_callbacks has one of pfnInternalAllocation and pfnInternalFree, "
+            "expected both or none");
     return SOFTSH_SUCCESS;
 }
 
 static softsh_result check_extent(const softsh_context *context, const char *field, VkExtent2D extent)
 {
-    if (extent.width == 0 || extent.height == 0 || extent.width > SOFTSH_MAX_EXTENT || extent.height > SOFTSH_MAX_EXTENT)
+    if (extent.width == 0 || extent.height == 0 || extent.width > SOFTSH_MAX_EXTENT ||
+        extent.height > SOFTSH_MAX_EXTENT)
         return INVALID("%s is %u x %u, expected 1 to %u each", field, extent.width, extent.height, SOFTSH_MAX_EXTENT);
     return SOFTSH_SUCCESS;
 }
@@ -77,7 +79,8 @@ softsh_result softshi_check_occluders_info(const softsh_context *context, const 
     if (result != SOFTSH_SUCCESS)
         return result;
     if (info->max_layers > SOFTSH_MAX_LAYERS)
-        return INVALID("softsh_occluders_info::max_layers is %u, expected at most %u", info->max_layers, SOFTSH_MAX_LAYERS);
+        return INVALID("softsh_occluders_info::max_layers is %u, expected at most %u", info->max_layers,
+                       SOFTSH_MAX_LAYERS);
     if ((unsigned)info->accel > SOFTSH_ACCEL_YSM)
         return INVALID("softsh_occluders_info::accel is %d, expected a softsh_accel", (int)info->accel);
     if (info->ysm_join > SOFTSH_MAX_EXTENT)
@@ -125,8 +128,9 @@ softsh_result softshi_check_view_info(const softsh_context *context, const softs
         return result;
     if (info->output_format != VK_FORMAT_R8_UNORM && info->output_format != VK_FORMAT_R16_SFLOAT &&
         info->output_format != VK_FORMAT_R16_UNORM && info->output_format != VK_FORMAT_R32_SFLOAT)
-        return UNSUPPORTED("softsh_view_info::output_format is VkFormat %d, expected R8_UNORM, R16_UNORM, R16_SFLOAT or R32_SFLOAT",
-                           (int)info->output_format);
+        return UNSUPPORTED(
+            "softsh_view_info::output_format is VkFormat %d, expected R8_UNORM, R16_UNORM, R16_SFLOAT or R32_SFLOAT",
+            (int)info->output_format);
     VkFormatProperties properties;
     context->vk.GetPhysicalDeviceFormatProperties(context->physical_device, info->output_format, &properties);
     if (!(properties.optimalTilingFeatures & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT))
@@ -168,8 +172,8 @@ softsh_result softshi_check_light(const softsh_context *context, const softsh_li
         return SOFTSH_SUCCESS;
     }
     if (!softshi_all_finite(light->center, 3))
-        return INVALID("softsh_light::center is (%g, %g, %g), expected finite numbers", light->center[0], light->center[1],
-                       light->center[2]);
+        return INVALID("softsh_light::center is (%g, %g, %g), expected finite numbers", light->center[0],
+                       light->center[1], light->center[2]);
     const struct {
         const char *name;
         const double *v;
@@ -197,15 +201,17 @@ static softsh_result check_depth_input(const softsh_context *context, const char
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
         known = known || format == formats[i];
     if (!known)
-        return UNSUPPORTED("%s::%s is VkFormat %d, expected a depth format or R32_SFLOAT", owner, names[1], (int)format);
+        return UNSUPPORTED("%s::%s is VkFormat %d, expected a depth format or R32_SFLOAT", owner, names[1],
+                           (int)format);
     VkFormatProperties properties;
     context->vk.GetPhysicalDeviceFormatProperties(context->physical_device, format, &properties);
     if (!(properties.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT))
         return UNSUPPORTED("%s::%s is VkFormat %d, which this device cannot sample", owner, names[1], (int)format);
-    if (layout != VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL && layout != VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL &&
-        layout != VK_IMAGE_LAYOUT_GENERAL)
-        return INVALID("%s::%s is VkImageLayout %d, expected SHADER_READ_ONLY_OPTIMAL, DEPTH_STENCIL_READ_ONLY_OPTIMAL or GENERAL",
-                       owner, names[2], (int)layout);
+    if (layout != VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL &&
+        layout != VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL && layout != VK_IMAGE_LAYOUT_GENERAL)
+        return INVALID(
+            "%s::%s is VkImageLayout %d, expected SHADER_READ_ONLY_OPTIMAL, DEPTH_STENCIL_READ_ONLY_OPTIMAL or GENERAL",
+            owner, names[2], (int)layout);
     if (format == VK_FORMAT_R32_SFLOAT && layout == VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL)
         return INVALID("%s::%s is DEPTH_STENCIL_READ_ONLY_OPTIMAL, which colour images never are", owner, names[2]);
     return SOFTSH_SUCCESS;
@@ -215,11 +221,12 @@ softsh_result softshi_check_rect(const softsh_context *context, const char *fiel
 {
     if (rect->extent.width == 0 && rect->extent.height == 0 && rect->offset.x == 0 && rect->offset.y == 0)
         rect->extent = inside;
-    const int64_t right = (int64_t)rect->offset.x + rect->extent.width, bottom = (int64_t)rect->offset.y + rect->extent.height;
+    const int64_t right = (int64_t)rect->offset.x + rect->extent.width,
+                  bottom = (int64_t)rect->offset.y + rect->extent.height;
     if (rect->extent.width == 0 || rect->extent.height == 0 || rect->offset.x < 0 || rect->offset.y < 0 ||
         right > inside.width || bottom > inside.height)
-        return INVALID("%s is %d, %d, %u x %u, expected a rectangle inside %u x %u", field, rect->offset.x, rect->offset.y,
-                       rect->extent.width, rect->extent.height, inside.width, inside.height);
+        return INVALID("%s is %d, %d, %u x %u, expected a rectangle inside %u x %u", field, rect->offset.x,
+                       rect->offset.y, rect->extent.width, rect->extent.height, inside.width, inside.height);
     return SOFTSH_SUCCESS;
 }
 
@@ -234,7 +241,8 @@ static softsh_result check_map(const softsh_context *context, const softsh_map *
     if (map->index >= count)
         return INVALID("softsh_map[%u]::index is %u, expected less than the number of maps, %u", i, map->index, count);
     if (map->array_layer != 0)
-        return UNSUPPORTED("softsh_map[%u]::array_layer is %u, expected 0 and a view of the layer", i, map->array_layer);
+        return UNSUPPORTED("softsh_map[%u]::array_layer is %u, expected 0 and a view of the layer", i,
+                           map->array_layer);
     static const char *const names[] = {"view", "format", "layout"};
     char field[48];
     snprintf(field, sizeof field, "softsh_map[%u]", i);
@@ -253,8 +261,8 @@ softsh_result softshi_check_maps(const softsh_context *context, const softsh_map
     if (!maps)
         return INVALID("softsh_build_info::maps is NULL");
     if (count > max_layers)
-        return softshi_fail(context, SOFTSH_ERROR_LIMIT, "softsh_build_info::map_count is %u, expected at most max_layers, %u",
-                            count, max_layers);
+        return softshi_fail(context, SOFTSH_ERROR_LIMIT,
+                            "softsh_build_info::map_count is %u, expected at most max_layers, %u", count, max_layers);
     uint32_t seen = 0;
     for (uint32_t i = 0; i < count; i++) {
         softsh_result result = check_map(context, &maps[i], i, count);
@@ -271,8 +279,8 @@ softsh_result softshi_check_maps(const softsh_context *context, const softsh_map
         if (i == 0)
             *extent = rect.extent;
         if (rect.extent.width != extent->width || rect.extent.height != extent->height)
-            return INVALID("softsh_map[%u] is %u x %u, expected the size of the first layer, %u x %u", i, rect.extent.width,
-                           rect.extent.height, extent->width, extent->height);
+            return INVALID("softsh_map[%u] is %u x %u, expected the size of the first layer, %u x %u", i,
+                           rect.extent.width, rect.extent.height, extent->width, extent->height);
     }
     if (extent->width > max_extent.width || extent->height > max_extent.height)
         return softshi_fail(context, SOFTSH_ERROR_LIMIT, "softsh_map is %u x %u, expected at most max_extent, %u x %u",
@@ -296,8 +304,9 @@ softsh_result softshi_check_camera(const softsh_context *context, const softsh_c
         return INVALID("softsh_camera::normals is set, but the view was created without normals");
     if (normals && camera->normals_layout != VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL &&
         camera->normals_layout != VK_IMAGE_LAYOUT_GENERAL)
-        return INVALID("softsh_camera::normals_layout is VkImageLayout %d, expected SHADER_READ_ONLY_OPTIMAL or GENERAL",
-                       (int)camera->normals_layout);
+        return INVALID(
+            "softsh_camera::normals_layout is VkImageLayout %d, expected SHADER_READ_ONLY_OPTIMAL or GENERAL",
+            (int)camera->normals_layout);
     return SOFTSH_SUCCESS;
 }
 

@@ -1,5 +1,5 @@
-/* Argument checks: all of them run before the first recorded command, and each failure names the field, its value and what
- * was expected. */
+/* Argument checks: all of them run before the first recorded command, and each failure names the field, its value and
+ * what was expected. */
 #ifndef SOFTSHI_VALIDATE_H
 #define SOFTSHI_VALIDATE_H
 

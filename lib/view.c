@@ -13,16 +13,18 @@ static softsh_result create_buffer(softsh_view *v)
     const softsh_context *context = v->context;
     const VkDeviceSize most = context->limits.maxStorageBufferRange;
     if (v->layout.filter.size > most || v->layout.tiles.size > most)
-        return softshi_fail(context, SOFTSH_ERROR_LIMIT,
-                            "softsh_view_info: scratch for %u x %u takes %llu MiB, the device's maxStorageBufferRange is %llu MiB",
-                            v->max_extent.width, v->max_extent.height,
-                            (unsigned long long)((v->layout.filter.size > most ? v->layout.filter.size : v->layout.tiles.size) >> 20),
-                            (unsigned long long)(most >> 20));
+        return softshi_fail(
+            context, SOFTSH_ERROR_LIMIT,
+            "softsh_view_info: scratch for %u x %u takes %llu MiB, the device's maxStorageBufferRange is %llu MiB",
+            v->max_extent.width, v->max_extent.height,
+            (unsigned long long)((v->layout.filter.size > most ? v->layout.filter.size : v->layout.tiles.size) >> 20),
+            (unsigned long long)(most >> 20));
     const VkBufferCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
         .size = v->layout.buffer_size,
-        .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
-                 VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+        .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
+                 VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+                 VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
         .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
     };
     const VkResult result = context->vk.CreateBuffer(context->device, &info, context->allocator, &v->block.buffer);
@@ -41,7 +43,8 @@ static softsh_result create_sets(softsh_view *v, uint32_t recordings)
     v->io_set_count = recordings;
     v->io_sets = softshi_host_allocate(context->allocator, recordings * sizeof *v->io_sets);
     if (!v->io_sets)
-        return softshi_fail(context, SOFTSH_ERROR_OUT_OF_HOST_MEMORY, "no host memory for %u descriptor sets", recordings);
+        return softshi_fail(context, SOFTSH_ERROR_OUT_OF_HOST_MEMORY, "no host memory for %u descriptor sets",
+                            recordings);
     const VkDescriptorPoolSize sizes[] = {
         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, recordings},
         {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 3 * recordings},

@@ -8,9 +8,9 @@
 #include "vulkan/memory.h"
 #include "vulkan/pass.h"
 
-/* Passes that query the hierarchy come in kinds, for what a view cannot know: occluders without and with wide levels (bit 0),
- * with one layer and with more (bit 1), and for automatic settings a light along the map's axes or turned against them (bit
- * 2), which micropatches cannot do. */
+/* Passes that query the hierarchy come in kinds, for what a view cannot know: occluders without and with wide levels
+ * (bit 0), with one layer and with more (bit 1), and for automatic settings a light along the map's axes or turned
+ * against them (bit 2), which micropatches cannot do. */
 enum { SOFTSHI_KIND_WIDE = 1, SOFTSHI_KIND_LAYERED = 2, SOFTSHI_KIND_TURNED = 4, SOFTSHI_KINDS = 8 };
 
 typedef struct softshi_view_pipelines {

@@ -12,23 +12,28 @@ static softsh_result check(const softsh_view *v, const softsh_visibility_info *i
     if (!info)
         return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_visibility_info is NULL");
     if (info->struct_size != sizeof *info)
-        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_visibility_info::struct_size is %u, expected %u",
-                            info->struct_size, (unsigned)sizeof *info);
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT,
+                            "softsh_visibility_info::struct_size is %u, expected %u", info->struct_size,
+                            (unsigned)sizeof *info);
     if (!v->block.ready)
-        return softshi_fail(context, SOFTSH_ERROR_STATE, "softsh_cmd_compute_visibility: no memory is bound to the view");
+        return softshi_fail(context, SOFTSH_ERROR_STATE,
+                            "softsh_cmd_compute_visibility: no memory is bound to the view");
     if (!info->occluders)
         return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_visibility_info::occluders is NULL");
     if (info->occluders->context != context)
-        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_visibility_info::occluders belongs to another context");
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT,
+                            "softsh_visibility_info::occluders belongs to another context");
     if (!info->occluders->built)
         return softshi_fail(context, SOFTSH_ERROR_STATE, "softsh_visibility_info::occluders was never built");
     if (info->camera_count == 0)
-        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_visibility_info::camera_count is 0, expected 1");
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT,
+                            "softsh_visibility_info::camera_count is 0, expected 1");
     if (!info->cameras)
         return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_visibility_info::cameras is NULL");
     if (info->camera_count > 1)
         return softshi_fail(context, SOFTSH_ERROR_UNSUPPORTED,
-                            "softsh_visibility_info::camera_count is %u, more than 1 is not supported yet", info->camera_count);
+                            "softsh_visibility_info::camera_count is %u, more than 1 is not supported yet",
+                            info->camera_count);
     softsh_result result = softshi_check_camera(context, info->cameras, v->normals);
     if (result != SOFTSH_SUCCESS)
         return result;
@@ -37,10 +42,12 @@ static softsh_result check(const softsh_view *v, const softsh_visibility_info *i
     if (result != SOFTSH_SUCCESS)
         return result;
     if (!info->visibility)
-        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_visibility_info::visibility is VK_NULL_HANDLE");
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT,
+                            "softsh_visibility_info::visibility is VK_NULL_HANDLE");
     if (info->override_bias && !(info->bias >= 0.0 && info->bias < 1e30))
         return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT,
-                            "softsh_visibility_info::bias is %g, expected a finite number of world units, at least 0", info->bias);
+                            "softsh_visibility_info::bias is %g, expected a finite number of world units, at least 0",
+                            info->bias);
     if (info->stats_buffer && !v->stats)
         return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT,
                             "softsh_visibility_info::stats_buffer is set, but the view was created without stats");
@@ -50,8 +57,9 @@ static softsh_result check(const softsh_view *v, const softsh_visibility_info *i
                             (unsigned long long)info->stats_offset);
     if (!v->automatic && softshi_settings_need_alignment(&v->settings) && !info->occluders->light.point &&
         !info->occluders->light.axis_aligned)
-        return softshi_fail(context, SOFTSH_ERROR_UNSUPPORTED,
-                            "softsh_light: its axes are turned against the map's, which micropatches cannot do; use microquads");
+        return softshi_fail(
+            context, SOFTSH_ERROR_UNSUPPORTED,
+            "softsh_light: its axes are turned against the map's, which micropatches cannot do; use microquads");
     return softshi_check_timestamps(context, info->timestamps);
 }
 
@@ -106,8 +114,9 @@ static void write_descriptors(const softsh_view *v, VkDescriptorSet set, const s
 static void record_stats(softshi_recorder *recorder, const softsh_view *v, const softsh_visibility_info *info)
 {
     const softsh_occluders *o = info->occluders;
-    softshi_record_copy(recorder, SOFTSHI_CONTROL, v->block.buffer, v->layout.control.offset + offsetof(ss_control, stats),
-                        info->stats_buffer, info->stats_offset, offsetof(softsh_stats, wide_levels_built));
+    softshi_record_copy(recorder, SOFTSHI_CONTROL, v->block.buffer,
+                        v->layout.control.offset + offsetof(ss_control, stats), info->stats_buffer, info->stats_offset,
+                        offsetof(softsh_stats, wide_levels_built));
     softshi_record_copy(recorder, SOFTSHI_PLAN, o->block.buffer,
                         o->layout.header.offset + sizeof(ss_occluders) + offsetof(ss_plan, built), info->stats_buffer,
                         info->stats_offset + offsetof(softsh_stats, wide_levels_built), 2 * sizeof(uint32_t));
@@ -118,7 +127,8 @@ softsh_result softsh_cmd_compute_visibility(VkCommandBuffer cmd, softsh_view *v,
     if (!v)
         return SOFTSH_ERROR_INVALID_ARGUMENT;
     if (!cmd)
-        return softshi_fail(v->context, SOFTSH_ERROR_INVALID_ARGUMENT, "softsh_cmd_compute_visibility: cmd is VK_NULL_HANDLE");
+        return softshi_fail(v->context, SOFTSH_ERROR_INVALID_ARGUMENT,
+                            "softsh_cmd_compute_visibility: cmd is VK_NULL_HANDLE");
     VkRect2D area;
     softsh_result result = check(v, info, &area);
     if (result != SOFTSH_SUCCESS)
@@ -145,7 +155,8 @@ softsh_result softsh_cmd_compute_visibility(VkCommandBuffer cmd, softsh_view *v,
     write_descriptors(v, recorder.sets[SS_SET_IO], info);
     softshi_record_update(&recorder, SOFTSHI_FRAME, v->block.buffer, v->layout.frame.offset, &visibility.frame,
                           sizeof visibility.frame);
-    softshi_record_update(&recorder, SOFTSHI_CONTROL, v->block.buffer, v->layout.control.offset, &cleared, sizeof cleared);
+    softshi_record_update(&recorder, SOFTSHI_CONTROL, v->block.buffer, v->layout.control.offset, &cleared,
+                          sizeof cleared);
     if (info->occluders->light.point) {
         softshi_hard_record(&visibility);
     } else {

@@ -128,7 +128,8 @@ class LibraryEstimator final : public Estimator
             view.stats = stats;
             library_.check(softsh_view_create(library_.context, &view, &view_));
             if (stats)
-                check(gpu_, gpu_buffer_create(&gpu_, sizeof(softsh_stats), VK_BUFFER_USAGE_TRANSFER_DST_BIT, true, &stats_));
+                check(gpu_,
+                      gpu_buffer_create(&gpu_, sizeof(softsh_stats), VK_BUFFER_USAGE_TRANSFER_DST_BIT, true, &stats_));
         } catch (...) {
             release();
             throw;

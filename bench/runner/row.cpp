@@ -228,7 +228,8 @@ std::string to_line(const Row &row)
         line += text;
     }
     if (row.stats) {
-        std::snprintf(text, sizeof text, "  active %llu, %.0f primitives each", static_cast<unsigned long long>(row.stats->active),
+        std::snprintf(text, sizeof text, "  active %llu, %.0f primitives each",
+                      static_cast<unsigned long long>(row.stats->active),
                       per_active(row, &softsh_stats::primitives).value_or(0.0));
         line += text;
     }

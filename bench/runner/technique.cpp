@@ -116,7 +116,8 @@ const Setting &find_setting(const Technique &technique, const std::string &key)
         if (applies)
             valid.push_back(setting.key);
     }
-    fail("unknown setting \"%s\" for %s, expected one of: %s", key.c_str(), technique.name.c_str(), join(valid).c_str());
+    fail("unknown setting \"%s\" for %s, expected one of: %s", key.c_str(), technique.name.c_str(),
+         join(valid).c_str());
 }
 
 } // namespace

@@ -16,8 +16,8 @@ struct Technique {
     bool is_peer = false;
     peer_kind peer = PEER_KIND_COUNT;
     peer_settings peer_options{};
-    bool automatic = false;           // the library without settings
-    softsh_settings library{};        // unless automatic
+    bool automatic = false;    // the library without settings
+    softsh_settings library{}; // unless automatic
     softsh_accel accel = SOFTSH_ACCEL_AUTO;
     std::optional<uint32_t> layers; // use only the first N layer maps
 };

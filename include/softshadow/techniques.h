@@ -20,21 +20,21 @@ typedef enum softsh_technique {
 
 /* Light sample points, section 3 of the 2007 paper. */
 typedef enum softsh_pattern {
-    SOFTSH_PATTERN_DEFAULT = 0,         /* 16 x 16 jittered */
+    SOFTSH_PATTERN_DEFAULT = 0, /* 16 x 16 jittered */
     SOFTSH_PATTERN_8X8 = 1,
     SOFTSH_PATTERN_16X16 = 2,
-    SOFTSH_PATTERN_16X16_JITTERED = 3,  /* 8 x 8 tiling of the 2 x 2 rotated grid */
+    SOFTSH_PATTERN_16X16_JITTERED = 3, /* 8 x 8 tiling of the 2 x 2 rotated grid */
     SOFTSH_PATTERN_32X32 = 4
 } softsh_pattern;
 
 /* What a map texel stands for. */
 typedef enum softsh_primitive {
-    SOFTSH_PRIMITIVE_DEFAULT = 0,                /* microquad, exact */
-    SOFTSH_PRIMITIVE_MICROPATCH = 1,             /* rectangle parallel to the light, extended to its left and bottom neighbours */
-    SOFTSH_PRIMITIVE_MICROPATCH_UNEXTENDED = 2,  /* without the extension: gaps leak light */
-    SOFTSH_PRIMITIVE_MICROQUAD = 3,              /* quad of four texel centres, its true coverage */
-    SOFTSH_PRIMITIVE_MICROQUAD_RECTANGLE = 4,    /* the 2007 paper's rectangle through the edge midpoints */
-    SOFTSH_PRIMITIVE_MICRORECT = 5               /* not supported yet */
+    SOFTSH_PRIMITIVE_DEFAULT = 0,    /* microquad, exact */
+    SOFTSH_PRIMITIVE_MICROPATCH = 1, /* rectangle parallel to the light, extended to its left and bottom neighbours */
+    SOFTSH_PRIMITIVE_MICROPATCH_UNEXTENDED = 2, /* without the extension: gaps leak light */
+    SOFTSH_PRIMITIVE_MICROQUAD = 3,             /* quad of four texel centres, its true coverage */
+    SOFTSH_PRIMITIVE_MICROQUAD_RECTANGLE = 4,   /* the 2007 paper's rectangle through the edge midpoints */
+    SOFTSH_PRIMITIVE_MICRORECT = 5              /* not supported yet */
 } softsh_primitive;
 
 /* Depth of a coarse texel when a budget makes levels above the finest necessary. */
@@ -57,7 +57,8 @@ typedef struct softsh_settings {
     softsh_primitive primitive;
     softsh_aggregation aggregation;
     softsh_merge merge;
-    uint32_t budget;        /* at most budget x budget micro-occluders per layer and pixel; 0: unlimited; at most 4096 */
+    uint32_t budget;        /* about budget x budget micro-occluders per layer and pixel; 0 and large numbers:
+                               240 x 240 micropatches or 160 x 160 microquads shared by the layers; at most 4096 */
     uint32_t min_level;     /* never evaluate below this level; 0 to 13; for comparisons */
     uint32_t filter_passes; /* post filter of section 3.1, 0 to 16; bitmask only */
     uint32_t no_hierarchy;  /* nonzero: neither prune kernels nor classify; for comparisons */

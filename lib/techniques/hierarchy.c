@@ -1,9 +1,10 @@
-/* Acceleration structures over a map: the min/max pyramid (HSM, Guennebaud et al. 2006), the multi-scale shadow map (MSSM,
- * Schwarz and Stamminger 2007, section 5) and their hybrid (YSM, Schwarz and Stamminger 2008, section 6).
+/* Acceleration structures over a map: the min/max pyramid (HSM, Guennebaud et al. 2006), the multi-scale shadow map
+ * (MSSM, Schwarz and Stamminger 2007, section 5) and their hybrid (YSM, Schwarz and Stamminger 2008, section 6).
  *
- * The three are one structure here: a full pyramid, and an MSSM over one of its levels (level 0: an MSSM, none: an HSM).
- * Departures: level 0 holds one value per texel instead of a pair; an MSSM has a pyramid beside it, a twelfth more memory at
- * ten levels, which gives the light's largest kernel, so that levels no kernel asks for are not built. */
+ * The three are one structure here: a full pyramid, and an MSSM over one of its levels (level 0: an MSSM, none: an
+ * HSM). Departures: level 0 holds one value per texel instead of a pair; an MSSM has a pyramid beside it, a thirtieth
+ * more memory at ten levels, which gives the light's largest kernel, so that levels no kernel asks for are not built.
+ */
 #include "hierarchy.h"
 
 enum { GROUP_X = 32, GROUP_Y = 4 };
@@ -62,9 +63,9 @@ void softshi_hierarchy_record_levels(softshi_recorder *recorder, const softsh_oc
     for (uint32_t level = 1; level <= layout->top; level++) {
         for (uint32_t layer = 0; layer < layers; layer++) {
             const ss_level_push push = {.level = level, .layer = layer};
-            softshi_pass pass = cover(level == 1 ? &o->pipelines.reduce_first : &o->pipelines.reduce,
-                                      softshi_level_size(extent.width, level),
-                                      softshi_level_size(extent.height, level));
+            softshi_pass pass =
+                cover(level == 1 ? &o->pipelines.reduce_first : &o->pipelines.reduce,
+                      softshi_level_size(extent.width, level), softshi_level_size(extent.height, level));
             pass.reads = SOFTSHI_HEADER | SOFTSHI_FAN_DEPTH;
             pass.writes = layer == 0 ? SOFTSHI_PYRAMID : 0;
             pass.push = &push;
@@ -85,7 +86,8 @@ void softshi_hierarchy_record_levels(softshi_recorder *recorder, const softsh_oc
             const softshi_pass pass = {
                 .pipeline = &o->pipelines.widen,
                 .reads = SOFTSHI_HEADER | SOFTSHI_PLAN | SOFTSHI_FAN_DEPTH | SOFTSHI_PYRAMID,
-                /* Layers are apart, but each pass reads and writes one view of them all, and validation goes by views. */
+                /* Layers are apart, but each pass reads and writes one view of them all, and validation goes by views.
+                 */
                 .writes = SOFTSHI_WIDE,
                 .push = &push,
                 .push_size = sizeof push,

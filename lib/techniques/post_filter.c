@@ -1,5 +1,5 @@
-/* The visibility buffer filter of Schwarz and Stamminger 2007, section 3.1, on penumbra tiles. Departure: neighbours that are
- * no receivers are left out. */
+/* The visibility buffer filter of Schwarz and Stamminger 2007, section 3.1, on undecided tiles. Departure: neighbours
+ * that are no receivers are left out. */
 #include "techniques.h"
 
 softsh_result softshi_post_filter_create(softsh_view *view, const softshi_specialization *constants)

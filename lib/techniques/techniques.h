@@ -1,4 +1,5 @@
-/* The stages of a visibility call, one file each. `create` makes a stage's pipelines for a view, `record` its passes. */
+/* The stages of a visibility call, one file each. `create` makes a stage's pipelines for a view, `record` its passes.
+ */
 #ifndef SOFTSHI_TECHNIQUES_H
 #define SOFTSHI_TECHNIQUES_H
 

@@ -42,7 +42,8 @@ void softshi_block_measure(const softsh_context *context, softshi_block *block)
     block->requirements.memoryTypeBits &= image.memoryTypeBits;
 }
 
-static softsh_result bind(const softsh_context *context, softshi_block *block, VkDeviceMemory memory, VkDeviceSize offset)
+static softsh_result bind(const softsh_context *context, softshi_block *block, VkDeviceMemory memory,
+                          VkDeviceSize offset)
 {
     block->bound = true;
     VkResult result = context->vk.BindBufferMemory(context->device, block->buffer, memory, offset);
@@ -99,15 +100,16 @@ softsh_result softshi_block_bind(const softsh_context *context, softshi_block *b
         return softshi_fail(context, SOFTSH_ERROR_STATE, "%s: the object has the library's memory", call);
     if (block->bound)
         return softshi_fail(context, SOFTSH_ERROR_STATE, "%s: %s", call,
-                            block->ready ? "memory is bound already" : "an earlier try failed, the object is of no use");
+                            block->ready ? "memory is bound already"
+                                         : "an earlier try failed, the object is of no use");
     if (!memory)
         return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "%s: memory is VK_NULL_HANDLE", call);
     if (offset % block->requirements.alignment != 0)
-        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "%s: offset is %llu, expected a multiple of %llu", call,
-                            (unsigned long long)offset, (unsigned long long)block->requirements.alignment);
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "%s: offset is %llu, expected a multiple of %llu",
+                            call, (unsigned long long)offset, (unsigned long long)block->requirements.alignment);
     if (size < block->requirements.size)
-        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "%s: size is %llu bytes, expected at least %llu", call,
-                            (unsigned long long)size, (unsigned long long)block->requirements.size);
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT, "%s: size is %llu bytes, expected at least %llu",
+                            call, (unsigned long long)size, (unsigned long long)block->requirements.size);
     return bind(context, block, memory, offset);
 }
 

@@ -14,8 +14,8 @@ typedef struct softshi_block {
     VkDeviceSize image_offset;
     VkMemoryRequirements requirements;
     VkDeviceMemory owned; /* VK_NULL_HANDLE if the memory is the caller's */
-    bool bound; /* or tried to be: Vulkan binds once */
-    bool ready; /* bound, and the object made usable with it */
+    bool bound;           /* or tried to be: Vulkan binds once */
+    bool ready;           /* bound, and the object made usable with it */
 } softshi_block;
 
 /* Works out `requirements` and `image_offset` from buffer and image. */

@@ -9,12 +9,14 @@ static void barrier(softshi_recorder *r)
         .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
         .srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
         .dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_UNIFORM_READ_BIT |
-                         VK_ACCESS_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
+                         VK_ACCESS_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT |
+                         VK_ACCESS_TRANSFER_WRITE_BIT,
     };
     r->context->vk.CmdPipelineBarrier(
-        r->cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
-        VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT, 0, 1,
-        &memory, 0, NULL, 0, NULL);
+        r->cmd,
+        VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
+        VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT, 0,
+        1, &memory, 0, NULL, 0, NULL);
     r->read = r->written = 0;
 }
 
@@ -97,8 +99,8 @@ void softshi_record_update(softshi_recorder *recorder, uint32_t writes, VkBuffer
     recorder->context->vk.CmdUpdateBuffer(recorder->cmd, buffer, offset, size, data);
 }
 
-void softshi_record_copy(softshi_recorder *recorder, uint32_t reads, VkBuffer from, VkDeviceSize from_offset, VkBuffer to,
-                         VkDeviceSize to_offset, VkDeviceSize size)
+void softshi_record_copy(softshi_recorder *recorder, uint32_t reads, VkBuffer from, VkDeviceSize from_offset,
+                         VkBuffer to, VkDeviceSize to_offset, VkDeviceSize size)
 {
     order(recorder, reads, 0);
     const VkBufferCopy region = {from_offset, to_offset, size};

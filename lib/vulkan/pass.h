@@ -6,13 +6,13 @@
 
 /* What passes touch. Two passes need a barrier between them if one writes what the other touches. */
 typedef enum softshi_resource {
-    SOFTSHI_HEADER = 1 << 0,     /* ss_occluders */
-    SOFTSHI_PLAN = 1 << 1,       /* ss_plan: arguments and levels built */
+    SOFTSHI_HEADER = 1 << 0, /* ss_occluders */
+    SOFTSHI_PLAN = 1 << 1,   /* ss_plan: arguments and levels built */
     SOFTSHI_FAN_DEPTH = 1 << 2,
     SOFTSHI_PYRAMID = 1 << 3,
     SOFTSHI_WIDE = 1 << 4,
     SOFTSHI_FRAME = 1 << 5,
-    SOFTSHI_CONTROL = 1 << 6,    /* arguments, list lengths, counters */
+    SOFTSHI_CONTROL = 1 << 6, /* arguments, list lengths, counters */
     SOFTSHI_TILES = 1 << 7,
     SOFTSHI_FILTER = 1 << 8,
     SOFTSHI_VISIBILITY = 1 << 9
@@ -48,8 +48,8 @@ void softshi_record_pass(softshi_recorder *recorder, const softshi_pass *pass);
 /* vkCmdUpdateBuffer; size a multiple of 4 and at most 65,536. */
 void softshi_record_update(softshi_recorder *recorder, uint32_t writes, VkBuffer buffer, VkDeviceSize offset,
                            const void *data, VkDeviceSize size);
-void softshi_record_copy(softshi_recorder *recorder, uint32_t reads, VkBuffer from, VkDeviceSize from_offset, VkBuffer to,
-                         VkDeviceSize to_offset, VkDeviceSize size);
+void softshi_record_copy(softshi_recorder *recorder, uint32_t reads, VkBuffer from, VkDeviceSize from_offset,
+                         VkBuffer to, VkDeviceSize to_offset, VkDeviceSize size);
 /* The wide image, its contents discarded, to GENERAL. */
 void softshi_record_discard_image(softshi_recorder *recorder, VkImage image, uint32_t layers);
 /* Makes everything written so far visible to compute shaders recorded later by anybody. */

@@ -1,4 +1,4 @@
-// The receiver side's descriptor set. A pass that does not use a binding must not be given one.
+// The receiver side's descriptor set.
 #ifndef SS_IO_BINDINGS_GLSL
 #define SS_IO_BINDINGS_GLSL
 

@@ -99,7 +99,7 @@ SS_STRUCT(ss_occluders)
     SS_VEC4 a_inverse;   /* its inverse by rows */
     SS_VEC4 light;       /* U.x, U.y, delta, epsilon */
     SS_VEC4 depths;      /* map's part of eta; tangent (or world size) of a texel in u, v; fan depth of the far plane */
-    SS_VEC4 extent;      /* half side of the square that areas are clipped to; 1 / its area; unused */
+    SS_VEC4 extent;      /* half side of the square that areas are clipped to; unused */
     SS_UVEC4 size;       /* width, height, layers; unused */
     SS_UVEC4 levels;     /* top of the pyramid, join level, wide levels allocated, of this map */
     SS_UVEC4 strides;    /* texels per layer: fan depth, pyramid; unused */
@@ -171,8 +171,7 @@ SS_STRUCT(ss_filter_push)
 {
     SS_UINT source; /* which of the two bitmask planes is read: 0 or 1 */
     SS_UINT last;   /* 1: write the visibility image */
-    SS_UINT plane;  /* floats per plane */
-    SS_UINT unused;
+    SS_UINT unused[2];
 }
 SS_STRUCT_END(ss_filter_push);
 
