@@ -33,17 +33,20 @@ bool load_values(ivec2 pixel, out vec2 values)
     return true;
 }
 
-float filter_axis(ivec2 pixel, ivec2 axis, vec2 here)
+// The value one axis gives; false if it gives none.
+bool filter_axis(ivec2 pixel, ivec2 axis, vec2 here, out float value)
 {
     vec2 before, after;
+    value = here.y;
     if (!load_values(pixel - axis, before) || !load_values(pixel + axis, after))
-        return here.y;
+        return false;
     const vec2 d = after - before;
     const float position = here.x - before.x;
     // The area value lies strictly between its neighbours' or on one of them, and both values change the same way.
     if (!(d.x * d.y > 0.0) || !(position * d.x >= 0.0) || !(abs(position) <= abs(d.x)))
-        return here.y;
-    return position / d.x * d.y + before.y;
+        return false;
+    value = position / d.x * d.y + before.y;
+    return true;
 }
 
 void main()
@@ -55,8 +58,11 @@ void main()
     vec2 here;
     if (any(greaterThanEqual(pixel, frame.area.zw)) || !load_values(pixel, here))
         return;
-    const float x = filter_axis(pixel, ivec2(1, 0), here), y = filter_axis(pixel, ivec2(0, 1), here);
-    const float occlusion = clamp(abs(x - here.y) <= abs(y - here.y) ? x : y, 0.0, 1.0);
+    float x, y;
+    const bool along_x = filter_axis(pixel, ivec2(1, 0), here, x), along_y = filter_axis(pixel, ivec2(0, 1), here, y);
+    // The smaller change; an axis without a value has no say, or edges along an axis would never be filtered.
+    const bool take_x = along_x && (!along_y || abs(x - here.y) <= abs(y - here.y));
+    const float occlusion = clamp(take_x ? x : y, 0.0, 1.0);
     filter_values[(2u - push.source) * ss_filter_plane() + ss_filter_index(pixel)] = occlusion;
     if (push.last != 0u)
         ss_write_visibility(pixel, 1.0 - occlusion);
