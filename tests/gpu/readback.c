@@ -87,7 +87,7 @@ static void copier_destroy(copier *c)
 }
 
 /* A host-visible copy of a part of the object's buffer. */
-static void *copy_range(const softsh_occluders *o, VkDeviceSize offset, VkDeviceSize size)
+static void *copy_range(const softshi_block *block, VkDeviceSize offset, VkDeviceSize size)
 {
     const VkMemoryBarrier before = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
                                     .srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT,
@@ -104,7 +104,7 @@ static void *copy_range(const softsh_occluders *o, VkDeviceSize offset, VkDevice
     VkCommandBuffer cmd = gpu_begin(&device);
     vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 1, &before, 0,
                          NULL, 0, NULL);
-    vkCmdCopyBuffer(cmd, o->block.buffer, staging.buffer, 1, &region);
+    vkCmdCopyBuffer(cmd, block->buffer, staging.buffer, 1, &region);
     vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &after, 0, NULL, 0,
                          NULL);
     assert_true(gpu_submit(&device, cmd));
@@ -145,8 +145,8 @@ static void copy_wide(const softsh_occluders *o, readback *r)
 void readback_create(const lamp *l, readback *out)
 {
     const softsh_occluders *const o = l->occluders;
-    ss_occluders *const header = copy_range(o, o->layout.header.offset, sizeof *header);
-    ss_plan *const plan = copy_range(o, o->layout.header.offset + sizeof *header, sizeof *plan);
+    ss_occluders *const header = copy_range(&o->block, o->layout.header.offset, sizeof *header);
+    ss_plan *const plan = copy_range(&o->block, o->layout.header.offset + sizeof *header, sizeof *plan);
 
     softshi_occluder_layout layout;
     memset(out, 0, sizeof *out);
@@ -162,8 +162,8 @@ void readback_create(const lamp *l, readback *out)
     out->wide_height = o->layout.wide_extent.height;
     out->pyramid_stride = layout.pyramid_texels;
     memcpy(out->pyramid_offsets, layout.offsets, sizeof out->pyramid_offsets);
-    out->fan_depth = copy_range(o, o->layout.fan_depth.offset, o->layout.fan_depth.size);
-    out->pyramid = copy_range(o, o->layout.pyramid.offset, o->layout.pyramid.size);
+    out->fan_depth = copy_range(&o->block, o->layout.fan_depth.offset, o->layout.fan_depth.size);
+    out->pyramid = copy_range(&o->block, o->layout.pyramid.offset, o->layout.pyramid.size);
     if (out->wide_built > 0)
         copy_wide(o, out);
     free(header);
@@ -187,6 +187,21 @@ reference_range readback_wide(const readback *r, uint32_t layer, uint32_t level,
 {
     const size_t slice = (size_t)layer * r->wide_allocated + level - 1;
     return r->wide[(slice * r->wide_height + y) * r->wide_width + x];
+}
+
+void sight_read_areas(sight *s, uint32_t width, uint32_t height, float *areas, bool *undecided)
+{
+    const softsh_view *const v = s->view;
+    const uint32_t columns = (width + SS_TILE_X - 1) / SS_TILE_X, rows = (height + SS_TILE_Y - 1) / SS_TILE_Y;
+    const size_t size = (size_t)width * height * sizeof *areas;
+    float *const plane = copy_range(&v->block, v->layout.filter.offset, size);
+    uint32_t *const tiles = copy_range(&v->block, v->layout.tiles.offset, columns * rows * sizeof *tiles);
+    memcpy(areas, plane, size);
+    for (uint32_t y = 0; y < height; y++)
+        for (uint32_t x = 0; x < width; x++)
+            undecided[y * width + x] = tiles[y / SS_TILE_Y * columns + x / SS_TILE_X] == SS_STATE_PIXELS;
+    free(plane);
+    free(tiles);
 }
 
 void sight_set_level(sight *s, uint32_t level)

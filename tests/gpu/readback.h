@@ -22,6 +22,9 @@ void readback_destroy(readback *r);
 reference_range readback_pyramid(const readback *r, uint32_t layer, uint32_t level, uint32_t x, uint32_t y);
 reference_range readback_wide(const readback *r, uint32_t layer, uint32_t level, uint32_t x, uint32_t y);
 
+/* What the post filter of a view's last run worked on: area occlusions of the pixels of a width x height render area,
+ * and whether a pixel's tile was undecided. Areas of the other tiles mean nothing. */
+void sight_read_areas(sight *s, uint32_t width, uint32_t height, float *areas, bool *undecided);
 /* Another least level for a view that was made with one: levels are no part of its pipelines, which are slow to make.
  */
 void sight_set_level(sight *s, uint32_t level);
