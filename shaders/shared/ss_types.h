@@ -75,11 +75,11 @@ typedef struct ss_ivec4 {
 #define SS_TILE_Y 8
 #define SS_TILE_PIXELS 64
 #define SS_EVALUATE_GROUP 64
-#define SS_MAX_LEVELS 16 /* levels of a 32768 texel map */
+#define SS_MAX_LEVELS 16      /* levels of a 32768 texel map */
 #define SS_TILE_REFINEMENTS 2 /* of kernels: a third pays for pixels only */
 #define SS_MAX_REFINEMENTS 3
-/* Words per tile in the tiles buffer: state, undecided list (tile, nearest occluder), and scratch that holds the bounds of
- * the tile's columns first and the active list (pixel, nearest occluder) later. */
+/* Words per tile in the tiles buffer: state, undecided list (tile, nearest occluder), and scratch that holds the bounds
+ * of the tile's columns first and the active list (pixel, nearest occluder) later. */
 #define SS_TILE_WORDS (1 + 2 + 2 * SS_TILE_PIXELS)
 #define SS_DISPATCH_WIDTH 32768 /* indirect dispatches wrap into y beyond this */
 
@@ -95,14 +95,14 @@ typedef struct ss_ivec4 {
 /* The light and its maps in map space: docs/numerics.md, sections 1 and 2. */
 SS_STRUCT(ss_occluders)
 {
-    SS_VEC4 a;           /* A by rows */
-    SS_VEC4 a_inverse;   /* its inverse by rows */
-    SS_VEC4 light;       /* U.x, U.y, delta, epsilon */
-    SS_VEC4 depths;      /* map's part of eta; tangent (or world size) of a texel in u, v; fan depth of the far plane */
-    SS_VEC4 extent;      /* half side of the square that areas are clipped to; unused */
-    SS_UVEC4 size;       /* width, height, layers; unused */
-    SS_UVEC4 levels;     /* top of the pyramid, join level, wide levels allocated, of this map */
-    SS_UVEC4 strides;    /* texels per layer: fan depth, pyramid; unused */
+    SS_VEC4 a;          /* A by rows */
+    SS_VEC4 a_inverse;  /* its inverse by rows */
+    SS_VEC4 light;      /* U.x, U.y, delta, epsilon */
+    SS_VEC4 depths;     /* map's part of eta; tangent (or world size) of a texel in u, v; fan depth of the far plane */
+    SS_VEC4 extent;     /* half side of the square that areas are clipped to; unused */
+    SS_UVEC4 size;      /* width, height, layers; unused */
+    SS_UVEC4 levels;    /* top of the pyramid, join level, wide levels allocated, of this map */
+    SS_UVEC4 strides;   /* texels per layer: fan depth, pyramid; unused */
     SS_UVEC4 unused[8]; /* ss_plan begins at a multiple of every offset alignment */
     SS_UVEC4 pyramid[SS_MAX_LEVELS]; /* per level: first texel, width; level 0 and the rest unused */
 }
