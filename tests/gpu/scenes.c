@@ -94,11 +94,12 @@ static void add_noise(const reference_map *map, uint64_t *state, float *depth)
 /* Steps and roughness along the camera's rays. */
 static void add_steps(uint64_t *state, double far_depth, uint32_t width, uint32_t height, float *depth)
 {
-    for (int block = 0; block < 12; block++) {
+    for (int block = 0; block < 14; block++) {
         const uint32_t x0 = reference_random(state) % width, y0 = reference_random(state) % height;
-        const uint32_t w = 1 + reference_random(state) % 6, h = 1 + reference_random(state) % 6;
+        const uint32_t w = 1 + reference_random(state) % 9, h = 1 + reference_random(state) % 9;
         const double step = reference_random_range(state, -0.1, 0.1);
-        const double rough = block % 2 ? 0.02 : 0.0;
+        /* From what the format's precision explains to what nobody would take for a plane. */
+        const double rough = block % 3 ? pow(10.0, reference_random_range(state, -6.0, -1.7)) : 0.0;
         for (uint32_t y = y0; y < y0 + h && y < height; y++)
             for (uint32_t x = x0; x < x0 + w && x < width; x++) {
                 float *const here = &depth[y * width + x];
