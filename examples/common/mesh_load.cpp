@@ -78,8 +78,24 @@ static void append_part(Mesh &mesh, const aiScene &scene, const aiMesh &part, co
     }
 }
 
+// assimp 5.2 never returns from a PLY file that ends inside its header.
+static void check_ply_header(const std::string &path)
+{
+    if (path.size() < 4 || path.compare(path.size() - 4, 4, ".ply") != 0)
+        return;
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
+        return; // assimp says so
+    std::string header(65536, '\0');
+    file.read(header.data(), static_cast<std::streamsize>(header.size()));
+    header.resize(static_cast<size_t>(file.gcount()));
+    if (header.find("end_header") == std::string::npos)
+        fail("%s: the PLY header has no end_header, the file is truncated", path.c_str());
+}
+
 Mesh load_mesh(const std::string &path, const glm::vec3 &colour)
 {
+    check_ply_header(path);
     std::error_code code;
     if (!std::filesystem::is_regular_file(path, code) || !std::ifstream(path))
         fail("%s: cannot open, expected a readable mesh file", path.c_str());
