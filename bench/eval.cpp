@@ -120,7 +120,7 @@ void run(const Options &o, gpu &g)
     softsh_stats stats{};
     if (counting->stats(stats))
         row.stats = stats;
-    if (!technique.is_peer)
+    if (technique.kind == TechniqueKind::library)
         row.memory = counting->memory();
     if (data.truth)
         row.error = measure_error(result, *data.truth, data.mask ? &*data.mask : nullptr);

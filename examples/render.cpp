@@ -359,7 +359,7 @@ void measure(Row &row, gpu &g, DeviceCase &device_case, const Technique &techniq
     for (int i = 0; i < 3; i++)
         runs.push_back(timed.run());
     add_times(row, runs);
-    if (technique.is_peer)
+    if (technique.kind != TechniqueKind::library)
         return;
     row.memory = timed.memory();
     const auto counting = make_estimator(g, device_case, technique, true);

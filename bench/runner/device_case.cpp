@@ -26,7 +26,8 @@ gpu_image upload(gpu &g, const FloatImage &depth)
 
 } // namespace
 
-DeviceCase::DeviceCase(gpu &g, const Case &case_data) : data(case_data), gpu_(g)
+DeviceCase::DeviceCase(gpu &g, const Case &case_data, const Scene *case_scene)
+    : data(case_data), scene(case_scene), gpu_(g)
 {
     camera = upload(g, data.camera.depth);
     try {

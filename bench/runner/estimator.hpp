@@ -39,22 +39,3 @@ class Estimator
 // With `stats` the library counts, which costs a little: time without. Throws Error, with the library's own sentence
 // where it has one.
 std::unique_ptr<Estimator> make_estimator(gpu &g, DeviceCase &device_case, const Technique &technique, bool stats);
-
-// A context for everything the process does with the library on this device; errors go to `last_message`.
-class LibraryContext
-{
-  public:
-    explicit LibraryContext(gpu &g);
-    ~LibraryContext();
-    LibraryContext(const LibraryContext &) = delete;
-    LibraryContext &operator=(const LibraryContext &) = delete;
-    // Throws Error with the last message unless `result` is success.
-    void check(softsh_result result) const;
-
-    softsh_context *context = nullptr;
-    std::string last_message;
-};
-
-// The public structures for a case's light and matrices.
-softsh_light to_library(const Light &light);
-void to_library(const Frustum &frustum, double view[16], double projection[16]);

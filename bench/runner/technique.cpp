@@ -39,10 +39,54 @@ uint32_t number(const std::string &key, const std::string &value, uint32_t least
     return static_cast<uint32_t>(parsed);
 }
 
+// What a setting applies to; one bit each.
+enum Family : unsigned {
+    ON_LIBRARY = 1u << 0, // all but auto
+    ON_AUTO = 1u << 1,
+    ON_COPY = 1u << 2,
+    ON_HARD = 1u << 3,
+    ON_PCF = 1u << 4,
+    ON_PCSS = 1u << 5,
+    ON_MAPS = ON_LIBRARY | ON_AUTO | ON_COPY | ON_HARD | ON_PCF | ON_PCSS, // reads the case's maps
+};
+
+struct Name {
+    const char *name;
+    Family family;
+    TechniqueKind kind;
+    softsh_technique library;
+};
+
+const std::vector<Name> technique_list = {
+    {"copy", ON_COPY, TechniqueKind::dispatch, SOFTSH_TECHNIQUE_AUTO},
+    {"hard", ON_HARD, TechniqueKind::dispatch, SOFTSH_TECHNIQUE_AUTO},
+    {"pcf", ON_PCF, TechniqueKind::dispatch, SOFTSH_TECHNIQUE_AUTO},
+    {"pcss", ON_PCSS, TechniqueKind::dispatch, SOFTSH_TECHNIQUE_AUTO},
+    {"area", ON_LIBRARY, TechniqueKind::library, SOFTSH_TECHNIQUE_AREA},
+    {"bitmask", ON_LIBRARY, TechniqueKind::library, SOFTSH_TECHNIQUE_BITMASK},
+    {"auto", ON_AUTO, TechniqueKind::library, SOFTSH_TECHNIQUE_AUTO},
+};
+
+std::vector<std::string> technique_names()
+{
+    std::vector<std::string> names;
+    for (const Name &entry : technique_list)
+        names.push_back(entry.name);
+    return names;
+}
+
+const Name &find_technique(const std::string &name)
+{
+    for (const Name &entry : technique_list)
+        if (name == entry.name)
+            return entry;
+    fail("unknown technique \"%s\", expected one of: %s", name.c_str(), join(technique_names()).c_str());
+}
+
 struct Setting {
     const char *key;
     const char *about;
-    bool library, peers; // where it applies
+    unsigned families; // what it applies to
     std::function<void(Technique &, const std::string &)> apply;
 };
 
@@ -51,12 +95,12 @@ const Values on_off = {{"on", 1}, {"off", 0}};
 const std::vector<Setting> &setting_list()
 {
     static const std::vector<Setting> list = {
-        {"accel", "hsm | mssm | ysm", true, false,
+        {"accel", "hsm | mssm | ysm", ON_LIBRARY | ON_AUTO,
          [](Technique &t, const std::string &v) {
              t.accel = static_cast<softsh_accel>(choose(
                  "accel", v, {{"hsm", SOFTSH_ACCEL_HSM}, {"mssm", SOFTSH_ACCEL_MSSM}, {"ysm", SOFTSH_ACCEL_YSM}}));
          }},
-        {"primitive", "micropatch | micropatch-unextended | microquad | microquad-rectangle", true, false,
+        {"primitive", "micropatch | micropatch-unextended | microquad | microquad-rectangle", ON_LIBRARY,
          [](Technique &t, const std::string &v) {
              t.library.primitive = static_cast<softsh_primitive>(
                  choose("primitive", v,
@@ -65,7 +109,7 @@ const std::vector<Setting> &setting_list()
                          {"microquad", SOFTSH_PRIMITIVE_MICROQUAD},
                          {"microquad-rectangle", SOFTSH_PRIMITIVE_MICROQUAD_RECTANGLE}}));
          }},
-        {"pattern", "8x8 | 16x16 | 16x16j | 32x32", true, false,
+        {"pattern", "8x8 | 16x16 | 16x16j | 32x32", ON_LIBRARY,
          [](Technique &t, const std::string &v) {
              t.library.pattern = static_cast<softsh_pattern>(choose("pattern", v,
                                                                     {{"8x8", SOFTSH_PATTERN_8X8},
@@ -73,51 +117,45 @@ const std::vector<Setting> &setting_list()
                                                                      {"16x16j", SOFTSH_PATTERN_16X16_JITTERED},
                                                                      {"32x32", SOFTSH_PATTERN_32X32}}));
          }},
-        {"aggregation", "nearest | sampled: depth of coarse levels", true, false,
+        {"aggregation", "nearest | sampled: depth of coarse levels", ON_LIBRARY,
          [](Technique &t, const std::string &v) {
              t.library.aggregation = static_cast<softsh_aggregation>(choose(
                  "aggregation", v, {{"nearest", SOFTSH_AGGREGATION_NEAREST}, {"sampled", SOFTSH_AGGREGATION_SAMPLED}}));
          }},
-        {"budget", "N | inf: at most N x N micro-occluders per pixel", true, false,
+        {"budget", "N | inf: at most N x N micro-occluders per pixel", ON_LIBRARY,
          [](Technique &t, const std::string &v) { t.library.budget = v == "inf" ? 0 : number("budget", v, 1, 4096); }},
-        {"level", "N: never evaluate below this level", true, false,
+        {"level", "N: never evaluate below this level", ON_LIBRARY,
          [](Technique &t, const std::string &v) { t.library.min_level = number("level", v, 0, 13); }},
-        {"hierarchy", "on | off: prune kernels and classify", true, false,
+        {"hierarchy", "on | off: prune kernels and classify", ON_LIBRARY,
          [](Technique &t, const std::string &v) { t.library.no_hierarchy = !choose("hierarchy", v, on_off); }},
-        {"filter", "N: passes of the post filter", true, false,
+        {"filter", "N: passes of the post filter", ON_LIBRARY,
          [](Technique &t, const std::string &v) { t.library.filter_passes = number("filter", v, 0, 16); }},
-        {"merge", "union | max: of layers", true, false,
+        {"merge", "union | max: of layers", ON_LIBRARY,
          [](Technique &t, const std::string &v) {
              t.library.merge = static_cast<softsh_merge>(
                  choose("merge", v, {{"union", SOFTSH_MERGE_UNION}, {"max", SOFTSH_MERGE_MAXIMUM}}));
          }},
-        {"layers", "N: use only the first N layer maps", true, true,
+        {"layers", "N: use only the first N layer maps", ON_MAPS,
          [](Technique &t, const std::string &v) { t.layers = number("layers", v, 1, SOFTSH_MAX_LAYERS); }},
-        {"blockers", "N: blocker taps of pcss", false, true,
+        {"blockers", "N: blocker taps", ON_PCSS,
          [](Technique &t, const std::string &v) { t.peer_options.blocker_taps = number("blockers", v, 1, 1024); }},
-        {"taps", "N: filter taps of pcf and pcss", false, true,
+        {"taps", "N: filter taps", ON_PCF | ON_PCSS,
          [](Technique &t, const std::string &v) { t.peer_options.filter_taps = number("taps", v, 1, 1024); }},
     };
     return list;
 }
 
-const std::vector<std::string> technique_names = {"copy", "hard", "pcf", "pcss", "area", "bitmask", "auto"};
-
-const Setting &find_setting(const Technique &technique, const std::string &key)
+const Setting &find_setting(const Name &technique, const std::string &key)
 {
     std::vector<std::string> valid;
     for (const Setting &setting : setting_list()) {
-        const bool applies = technique.is_peer ? setting.peers : setting.library;
-        /* Automatic means no settings; which maps and structure there are is not the technique's business. */
-        if (technique.automatic && key != "layers" && key != "accel" && key == setting.key)
-            fail("setting %s does not apply to auto, which takes accel and layers only", key.c_str());
-        if (applies && key == setting.key)
+        if (!(setting.families & technique.family))
+            continue;
+        if (key == setting.key)
             return setting;
-        if (applies)
-            valid.push_back(setting.key);
+        valid.push_back(setting.key);
     }
-    fail("unknown setting \"%s\" for %s, expected one of: %s", key.c_str(), technique.name.c_str(),
-         join(valid).c_str());
+    fail("unknown setting \"%s\" for %s, expected one of: %s", key.c_str(), technique.name, join(valid).c_str());
 }
 
 } // namespace
@@ -127,22 +165,17 @@ Technique parse_technique(const std::string &name, const std::vector<std::string
     Technique t;
     t.name = name;
     t.library.struct_size = sizeof t.library;
-    t.peer = peer_find(name.c_str());
-    t.is_peer = t.peer != PEER_KIND_COUNT;
-    if (name == "auto")
-        t.automatic = true;
-    else if (name == "area")
-        t.library.technique = SOFTSH_TECHNIQUE_AREA;
-    else if (name == "bitmask")
-        t.library.technique = SOFTSH_TECHNIQUE_BITMASK;
-    else if (!t.is_peer)
-        fail("unknown technique \"%s\", expected one of: %s", name.c_str(), join(technique_names).c_str());
+    const Name &entry = find_technique(name);
+    t.kind = entry.kind;
+    t.peer = peer_find(entry.name);
+    t.automatic = entry.family == ON_AUTO;
+    t.library.technique = entry.library;
     for (const std::string &assignment : assignments) {
         const size_t equals = assignment.find('=');
         if (equals == std::string::npos)
             fail("--set %s: expected KEY=VALUE", assignment.c_str());
         const std::string key = assignment.substr(0, equals), value = assignment.substr(equals + 1);
-        find_setting(t, key).apply(t, value);
+        find_setting(entry, key).apply(t, value);
         t.settings[key] = value;
     }
     return t;
@@ -158,8 +191,13 @@ std::string describe(const Technique &technique)
 
 std::string technique_help()
 {
-    std::string text = "techniques: " + join(technique_names) + "\nsettings (--set KEY=VALUE):\n";
-    for (const Setting &setting : setting_list())
-        text += std::string("  ") + setting.key + "=" + setting.about + (setting.library ? "" : " (peers)") + "\n";
+    std::string text = "techniques: " + join(technique_names()) + "\nsettings (--set KEY=VALUE):\n";
+    for (const Setting &setting : setting_list()) {
+        std::vector<std::string> names;
+        for (const Name &entry : technique_list)
+            if (setting.families & entry.family)
+                names.push_back(entry.name);
+        text += std::string("  ") + setting.key + "=" + setting.about + " (" + join(names) + ")\n";
+    }
     return text;
 }

@@ -10,10 +10,16 @@
 
 #include "peers.h"
 
+// What runs a technique.
+enum class TechniqueKind {
+    library,
+    dispatch, // one dispatch of bench/peers on the depth buffers of the case
+};
+
 struct Technique {
     std::string name;                            // as given
     std::map<std::string, std::string> settings; // as given, for reports
-    bool is_peer = false;
+    TechniqueKind kind = TechniqueKind::library;
     peer_kind peer = PEER_KIND_COUNT;
     peer_settings peer_options{};
     bool automatic = false;    // the library without settings

@@ -1,0 +1,15 @@
+// What the estimators share, and one factory for each kind of technique. make_estimator chooses among them.
+#pragma once
+
+#include "estimator.hpp"
+
+std::unique_ptr<Estimator> make_library_estimator(gpu &g, DeviceCase &device_case, const Technique &technique,
+                                                  bool stats);
+std::unique_ptr<Estimator> make_peer_estimator(gpu &g, DeviceCase &device_case, const Technique &technique);
+
+// A storage image for the result, of the camera's size and R32F.
+gpu_image make_output(gpu &g, const FloatImage &size);
+FloatImage read_output(gpu &g, gpu_image &image);
+
+// Layer maps of a case in order of their index, at most `limit`. Throws Error where there are others.
+std::vector<size_t> layer_maps(const Case &data, std::optional<uint32_t> limit);
