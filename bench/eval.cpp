@@ -5,6 +5,7 @@
 #include <fstream>
 #include <getopt.h>
 
+#include "command_line.hpp"
 #include "error.hpp"
 #include "row.hpp"
 
@@ -31,11 +32,7 @@ void print_help()
         technique_help().c_str());
 }
 
-[[noreturn]] void usage_error(const char *text)
-{
-    std::fprintf(stderr, "softshadow-eval: %s; see --help\n", text);
-    std::exit(2);
-}
+const CommandLine command_line("softshadow-eval");
 
 Options parse(int argc, char **argv)
 {
@@ -50,7 +47,6 @@ Options parse(int argc, char **argv)
                                           {nullptr, 0, nullptr, 0}};
     Options o;
     for (int c; (c = getopt_long(argc, argv, "", long_options, nullptr)) != -1;) {
-        char *end = nullptr;
         switch (c) {
         case 't':
             o.technique = optarg;
@@ -59,9 +55,7 @@ Options parse(int argc, char **argv)
             o.settings.push_back(optarg);
             break;
         case 'r':
-            o.repeat = static_cast<int>(std::strtol(optarg, &end, 10));
-            if (*optarg == '\0' || *end != '\0' || o.repeat < 0 || o.repeat > 10000)
-                usage_error("--repeat expects a whole number from 0 to 10000");
+            o.repeat = static_cast<int>(command_line.whole("--repeat", optarg, 0, 10000));
             break;
         case 'o':
             o.out = optarg;
@@ -83,7 +77,7 @@ Options parse(int argc, char **argv)
         }
     }
     if (argc - optind != 1)
-        usage_error("expected one case folder");
+        command_line.error("expected one case folder");
     o.case_dir = argv[optind];
     return o;
 }
