@@ -96,10 +96,10 @@ void write_images(const Options &o, const Case &data, const FloatImage &result)
 
 void print_ratio(const Row &row, Row other, const std::vector<RunTimes> &runs)
 {
-    add_times(other, runs);
+    other.times = summarise(runs);
     std::printf("%s %.3f ms / %s %.3f ms = %.2f (medians of %zu, in turn, without the build)\n",
-                describe(row.technique).c_str(), row.visibility_ms, describe(other.technique).c_str(),
-                other.visibility_ms, row.visibility_ms / other.visibility_ms, runs.size());
+                describe(row.technique).c_str(), row.times->visibility, describe(other.technique).c_str(),
+                other.times->visibility, row.times->visibility / other.times->visibility, runs.size());
 }
 
 void run(const Options &o, gpu &g)
@@ -127,11 +127,11 @@ void run(const Options &o, gpu &g)
             other->run();
         std::vector<RunTimes> runs, other_runs;
         for (int i = 0; i < o.repeat; i++) {
-            runs.push_back(timed->run());
+            runs.push_back(timed_run(*timed));
             if (other)
-                other_runs.push_back(other->run());
+                other_runs.push_back(timed_run(*other));
         }
-        add_times(row, runs);
+        row.times = summarise(runs);
         if (other)
             print_ratio(row, make_row(g, data, parse_technique(o.against, {})), other_runs);
     }

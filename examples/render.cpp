@@ -194,8 +194,8 @@ void measure(Row &row, gpu &g, DeviceCase &device_case, const Technique &techniq
 {
     std::vector<RunTimes> runs;
     for (int i = 0; i < 3; i++)
-        runs.push_back(timed.run());
-    add_times(row, runs);
+        runs.push_back(timed_run(timed));
+    row.times = summarise(runs);
     if (technique.kind != TechniqueKind::library)
         return;
     row.memory = timed.memory();
@@ -210,9 +210,9 @@ void print_stats(const Row &row)
 {
     std::printf("device      %s, %s\n", row.device.c_str(), row.driver.c_str());
     std::printf("images      %u x %u, map %u x %u\n", row.width, row.height, row.map_size, row.map_size);
-    for (const PassTime &pass : row.passes)
+    for (const PassTime &pass : row.times->passes)
         std::printf("time        %9.3f ms  %s\n", pass.ms, pass.name.c_str());
-    std::printf("time        %9.3f ms  total\n", row.build_ms + row.visibility_ms);
+    std::printf("time        %9.3f ms  total\n", row.times->total);
     if (row.stats) {
         const auto line = [&](const char *name, uint64_t value) {
             std::printf("count   %13llu  %s\n", static_cast<unsigned long long>(value), name);

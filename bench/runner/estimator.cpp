@@ -2,6 +2,7 @@
 #include "estimators.hpp"
 
 #include <algorithm>
+#include <chrono>
 
 #include "error.hpp"
 
@@ -41,6 +42,14 @@ std::vector<size_t> layer_maps(const Case &data, std::optional<uint32_t> limit)
     if (limit)
         maps.resize(*limit);
     return maps;
+}
+
+RunTimes timed_run(Estimator &estimator, bool build)
+{
+    const auto start = std::chrono::steady_clock::now();
+    RunTimes times = estimator.run(build);
+    times.wall_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    return times;
 }
 
 std::unique_ptr<Estimator> make_estimator(gpu &g, DeviceCase &device_case, const Technique &technique, bool stats)

@@ -17,6 +17,7 @@ struct PassTime {
 // Times of one run; build and visibility are separate recordings.
 struct RunTimes {
     std::vector<PassTime> build, visibility;
+    double wall_ms = 0; // filled by timed_run
 };
 
 struct MemoryUse {
@@ -35,6 +36,9 @@ class Estimator
     virtual bool stats(softsh_stats &) = 0;
     virtual MemoryUse memory() const = 0;
 };
+
+// One run with the host's clock around it.
+RunTimes timed_run(Estimator &estimator, bool build = true);
 
 // With `stats` the library counts, which costs a little: time without. Throws Error, with the library's own sentence
 // where it has one.

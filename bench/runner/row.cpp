@@ -14,11 +14,20 @@
 namespace
 {
 
-double median(std::vector<double> values)
+// Between the values at rank q of 0 to 1.
+double quantile(std::vector<double> values, double q)
 {
+    if (values.empty())
+        return 0.0;
     std::sort(values.begin(), values.end());
-    const size_t n = values.size();
-    return n == 0 ? 0.0 : n % 2 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
+    const double at = q * static_cast<double>(values.size() - 1);
+    const size_t below = static_cast<size_t>(at), above = std::min(below + 1, values.size() - 1);
+    return values[below] + (at - static_cast<double>(below)) * (values[above] - values[below]);
+}
+
+double median(const std::vector<double> &values)
+{
+    return quantile(values, 0.5);
 }
 
 double sum(const std::vector<PassTime> &passes)
@@ -61,6 +70,22 @@ std::optional<double> count(const Row &row, uint64_t softsh_stats::*field)
     if (!row.stats)
         return std::nullopt;
     return static_cast<double>((*row.stats).*field);
+}
+
+std::optional<double> time_figure(const Row &row, double RowTimes::*field)
+{
+    return row.times ? std::optional<double>((*row.times).*field) : std::nullopt;
+}
+
+// Milliseconds of a stage; none if no pass of it ran.
+std::optional<double> stage_ms(const Row &row, const std::string &stage)
+{
+    std::optional<double> ms;
+    if (row.times)
+        for (const PassTime &pass : row.times->passes)
+            if (stage == stage_of(pass.name))
+                ms = ms.value_or(0.0) + pass.ms;
+    return ms;
 }
 
 } // namespace
@@ -109,30 +134,40 @@ Row make_row(const gpu &g, const Case &data, const Technique &technique)
     return row;
 }
 
-void add_times(Row &row, const std::vector<RunTimes> &runs)
+std::optional<RowTimes> summarise(const std::vector<RunTimes> &runs)
 {
-    std::vector<double> build, visibility;
+    if (runs.empty())
+        return std::nullopt;
+    std::vector<double> build, visibility, total, wall;
     std::map<std::string, std::vector<double>> passes;
     std::vector<std::string> order;
     for (const RunTimes &run : runs) {
         build.push_back(sum(run.build));
         visibility.push_back(sum(run.visibility));
-        std::map<std::string, double> totals;
+        total.push_back(build.back() + visibility.back());
+        wall.push_back(run.wall_ms);
+        std::map<std::string, double> sums;
         for (const auto *list : {&run.build, &run.visibility}) {
             for (const PassTime &pass : *list) {
-                totals[pass.name] += pass.ms;
+                sums[pass.name] += pass.ms;
                 if (std::find(order.begin(), order.end(), pass.name) == order.end())
                     order.push_back(pass.name);
             }
         }
-        for (const auto &[name, ms] : totals)
+        for (const auto &[name, ms] : sums)
             passes[name].push_back(ms);
     }
-    row.build_ms = median(build);
-    row.visibility_ms = median(visibility);
-    row.passes.clear();
+    RowTimes times;
+    times.runs = static_cast<uint32_t>(runs.size());
+    times.build = median(build);
+    times.visibility = median(visibility);
+    times.total = median(total);
+    times.total_low = quantile(total, 0.25);
+    times.total_high = quantile(total, 0.75);
+    times.wall = median(wall);
     for (const std::string &name : order)
-        row.passes.push_back({name, median(passes[name])});
+        times.passes.push_back({name, median(passes[name])});
+    return times;
 }
 
 std::string to_json(const Row &row)
@@ -150,17 +185,21 @@ std::string to_json(const Row &row)
     cJSON_AddNumberToObject(json, "map_size", row.map_size);
     cJSON_AddNumberToObject(json, "light_size", row.light_size);
 
+    if (!row.variant.empty())
+        cJSON_AddStringToObject(json, "variant", row.variant.c_str());
+
     cJSON *time = cJSON_AddObjectToObject(json, "time_ms");
-    const bool timed = !row.passes.empty();
-    std::map<std::string, double> stages;
-    for (const PassTime &pass : row.passes)
-        stages[stage_of(pass.name)] += pass.ms;
     for (const char *stage : {"build", "classify", "evaluate", "filter"})
-        add_optional(time, stage, stages.count(stage) ? std::optional<double>(stages[stage]) : std::nullopt);
-    add_optional(time, "total", timed ? std::optional<double>(row.build_ms + row.visibility_ms) : std::nullopt);
+        add_optional(time, stage, stage_ms(row, stage));
+    add_optional(time, "total", time_figure(row, &RowTimes::total));
+    add_optional(time, "total_low", time_figure(row, &RowTimes::total_low));
+    add_optional(time, "total_high", time_figure(row, &RowTimes::total_high));
+    add_optional(time, "wall", time_figure(row, &RowTimes::wall));
+    cJSON_AddNumberToObject(time, "runs", row.times ? row.times->runs : 0);
     cJSON *passes = cJSON_AddObjectToObject(time, "passes");
-    for (const PassTime &pass : row.passes)
-        cJSON_AddNumberToObject(passes, pass.name.c_str(), pass.ms);
+    if (row.times)
+        for (const PassTime &pass : row.times->passes)
+            cJSON_AddNumberToObject(passes, pass.name.c_str(), pass.ms);
 
     cJSON *counts = cJSON_AddObjectToObject(json, "counts");
     add_optional(counts, "pixels", count(row, &softsh_stats::pixels));
@@ -204,6 +243,14 @@ std::string to_json(const Row &row)
     add_optional(error, "max", max);
     add_optional(error, "pixels", pixels);
 
+    if (row.front)
+        cJSON_AddBoolToObject(json, "front", *row.front);
+    if (!row.measures.empty()) {
+        cJSON *measures = cJSON_AddObjectToObject(json, "measures");
+        for (const auto &[name, value] : row.measures)
+            add_optional(measures, name.c_str(), value);
+    }
+
     char *text = cJSON_Print(json);
     cJSON_Delete(json);
     if (!text)
@@ -211,6 +258,54 @@ std::string to_json(const Row &row)
     const std::string result = std::string(text) + "\n";
     cJSON_free(text);
     return result;
+}
+
+std::string csv_header()
+{
+    return "case,variant,device,driver,technique,settings,width,height,map_size,light_size,build_ms,classify_ms,"
+           "evaluate_ms,"
+           "filter_ms,total_ms,total_low_ms,total_high_ms,wall_ms,runs,pixels,lit,umbra,active,nodes_per_active,"
+           "primitives_per_active,persistent_bytes,transient_bytes,mae,rmse,p99,max,error_pixels,front\n";
+}
+
+std::string to_csv(const Row &row)
+{
+    std::string line;
+    const auto text = [&](const std::string &value) {
+        std::string quoted = value;
+        for (size_t at = 0; (at = quoted.find('"', at)) != std::string::npos; at += 2)
+            quoted.insert(at, 1, '"');
+        line += (line.empty() ? "\"" : ",\"") + quoted + "\"";
+    };
+    const auto figure = [&](std::optional<double> value) {
+        char digits[32] = "";
+        if (value && std::isfinite(*value))
+            std::snprintf(digits, sizeof digits, "%.9g", *value);
+        line += std::string(",") + digits;
+    };
+    std::string settings;
+    for (const auto &[key, value] : row.technique.settings)
+        settings += (settings.empty() ? "" : " ") + key + "=" + value;
+    for (const std::string &value : {row.case_name, row.variant, row.device, row.driver, row.technique.name, settings})
+        text(value);
+    for (const double value : {double(row.width), double(row.height), double(row.map_size), row.light_size})
+        figure(value);
+    for (const char *stage : {"build", "classify", "evaluate", "filter"})
+        figure(stage_ms(row, stage));
+    for (const auto field : {&RowTimes::total, &RowTimes::total_low, &RowTimes::total_high, &RowTimes::wall})
+        figure(time_figure(row, field));
+    figure(row.times ? row.times->runs : 0);
+    for (const auto field : {&softsh_stats::pixels, &softsh_stats::lit, &softsh_stats::umbra, &softsh_stats::active})
+        figure(count(row, field));
+    for (const auto field : {&softsh_stats::nodes, &softsh_stats::primitives})
+        figure(per_active(row, field));
+    figure(row.memory ? std::optional<double>(row.memory->persistent) : std::nullopt);
+    figure(row.memory ? std::optional<double>(row.memory->transient) : std::nullopt);
+    for (const auto field : {&ErrorMetric::mae, &ErrorMetric::rmse, &ErrorMetric::p99, &ErrorMetric::max})
+        figure(row.error ? std::optional<double>((*row.error).*field) : std::nullopt);
+    figure(row.error ? std::optional<double>(row.error->pixels) : std::nullopt);
+    figure(row.front ? std::optional<double>(*row.front) : std::nullopt);
+    return line + "\n";
 }
 
 std::string to_line(const Row &row)
@@ -223,8 +318,8 @@ std::string to_line(const Row &row)
         std::snprintf(text, sizeof text, "  error %.4f (rms %.4f)", row.error->mae, row.error->rmse);
         line += text;
     }
-    if (!row.passes.empty()) {
-        std::snprintf(text, sizeof text, "  %9.2f ms (build %.2f)", row.build_ms + row.visibility_ms, row.build_ms);
+    if (row.times) {
+        std::snprintf(text, sizeof text, "  %9.2f ms (build %.2f)", row.times->total, row.times->build);
         line += text;
     }
     if (row.stats) {
