@@ -47,3 +47,11 @@ DeviceCase::~DeviceCase()
     for (gpu_image &image : maps)
         gpu_image_destroy(&gpu_, &image);
 }
+
+void DeviceCase::upload_map(size_t i)
+{
+    const FloatImage &depth = data.maps[i].depth;
+    if (!gpu_image_upload(&gpu_, &maps[i], depth.texels.data(), depth.texels.size() * sizeof(float),
+                          VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL))
+        fail("%s", gpu_.error);
+}

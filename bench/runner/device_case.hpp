@@ -17,6 +17,9 @@ class DeviceCase
     DeviceCase(const DeviceCase &) = delete;
     DeviceCase &operator=(const DeviceCase &) = delete;
 
+    // After data.maps[i] has changed; its size must not have. Nothing recorded before may be pending.
+    void upload_map(size_t i);
+
     const Case &data;
     const Scene *scene;
     gpu_image camera{};

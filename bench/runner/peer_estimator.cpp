@@ -49,10 +49,10 @@ class PeerEstimator final : public Estimator
         const VkCommandBuffer cmd = gpu_begin(&gpu_);
         queries_.reset(cmd);
         gpu_cmd_image_layout(cmd, &output_, VK_IMAGE_LAYOUT_GENERAL);
-        vkCmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_.pool, 0);
+        queries_.write(cmd, 0, true);
         const bool recorded = peer_record(&gpu_, peer_, cmd, &inputs);
         const std::string error = gpu_.error;
-        vkCmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_.pool, 1);
+        queries_.write(cmd, 1);
         if (!gpu_submit(&gpu_, cmd))
             fail("%s", gpu_.error);
         if (!recorded)

@@ -23,6 +23,14 @@ void Queries::reset(VkCommandBuffer cmd)
     vkCmdResetQueryPool(cmd, pool, 0, count_);
 }
 
+void Queries::write(VkCommandBuffer cmd, uint32_t i, bool hold_back)
+{
+    vkCmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, pool, i);
+    if (hold_back)
+        vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, nullptr,
+                             0, nullptr, 0, nullptr);
+}
+
 std::vector<double> Queries::differences(uint32_t first, uint32_t n)
 {
     std::vector<uint64_t> ticks(n + 1);

@@ -15,6 +15,9 @@ class Queries
     Queries &operator=(const Queries &) = delete;
 
     void reset(VkCommandBuffer cmd);
+    // Timestamp i, of everything recorded before. The first of a recording needs what follows held back: Mesa's
+    // software driver else takes it, once the device has drawn anything, together with the next one.
+    void write(VkCommandBuffer cmd, uint32_t i, bool hold_back = false);
     // Milliseconds between query i and query i + 1, for n of them from `first` on.
     std::vector<double> differences(uint32_t first, uint32_t n);
 

@@ -185,6 +185,8 @@ std::string to_json(const Row &row)
     cJSON_AddNumberToObject(json, "map_size", row.map_size);
     cJSON_AddNumberToObject(json, "light_size", row.light_size);
 
+    if (!row.suite.empty())
+        cJSON_AddStringToObject(json, "suite", row.suite.c_str());
     if (!row.variant.empty())
         cJSON_AddStringToObject(json, "variant", row.variant.c_str());
 
@@ -262,7 +264,7 @@ std::string to_json(const Row &row)
 
 std::string csv_header()
 {
-    return "case,variant,device,driver,technique,settings,width,height,map_size,light_size,build_ms,classify_ms,"
+    return "suite,case,variant,device,driver,technique,settings,width,height,map_size,light_size,build_ms,classify_ms,"
            "evaluate_ms,"
            "filter_ms,total_ms,total_low_ms,total_high_ms,wall_ms,runs,pixels,lit,umbra,active,nodes_per_active,"
            "primitives_per_active,persistent_bytes,transient_bytes,mae,rmse,p99,max,error_pixels,front\n";
@@ -286,7 +288,8 @@ std::string to_csv(const Row &row)
     std::string settings;
     for (const auto &[key, value] : row.technique.settings)
         settings += (settings.empty() ? "" : " ") + key + "=" + value;
-    for (const std::string &value : {row.case_name, row.variant, row.device, row.driver, row.technique.name, settings})
+    for (const std::string &value :
+         {row.suite, row.case_name, row.variant, row.device, row.driver, row.technique.name, settings})
         text(value);
     for (const double value : {double(row.width), double(row.height), double(row.map_size), row.light_size})
         figure(value);

@@ -26,7 +26,7 @@ struct RowTimes {
 
 struct Row {
     std::string case_name, device, driver;
-    std::string variant; // what a suite changed in the case, or empty
+    std::string suite, variant; // of the benchmark, and what it changed in the case; or empty
     Technique technique;
     uint32_t width = 0, height = 0, map_size = 0;
     double light_size = 0; // full edge in world units, or full angle in radians

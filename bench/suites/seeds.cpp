@@ -1,0 +1,293 @@
+// The claims of the papers, held against this machine. What cannot be tried yet is listed with its reason.
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <functional>
+
+#include "suite.hpp"
+
+namespace
+{
+
+std::string text(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+std::string text(const char *format, ...)
+{
+    char line[512];
+    va_list arguments;
+    va_start(arguments, format);
+    std::vsnprintf(line, sizeof line, format, arguments);
+    va_end(arguments);
+    return line;
+}
+
+// Rows by what was asked for.
+using Rows = std::map<std::string, Row>;
+
+Rows measure(Bench &bench, BenchCase &bench_case, const std::vector<std::string> &names, const Effort &effort,
+             const std::string &variant)
+{
+    std::vector<Technique> techniques;
+    for (const std::string &name : names)
+        techniques.push_back(technique_of(name));
+    const std::vector<Row> rows = bench.measure(bench_case, techniques, effort, variant);
+    Rows result;
+    for (size_t i = 0; i < rows.size(); i++)
+        result[names[i]] = rows[i];
+    return result;
+}
+
+double time(const Rows &rows, const std::string &name)
+{
+    return rows.at(name).times->visibility;
+}
+
+double error(const Rows &rows, const std::string &name)
+{
+    return rows.at(name).error->mae;
+}
+
+double primitives(const Row &row)
+{
+    return row.stats && row.stats->active
+               ? static_cast<double>(row.stats->primitives) / static_cast<double>(row.stats->active)
+               : 0.0;
+}
+
+bool near(double value, double claimed, double tolerance)
+{
+    return std::fabs(value / claimed - 1.0) <= tolerance;
+}
+
+void untried(Bench &bench, const char *id, const char *claim, const char *why)
+{
+    bench.report().claims.push_back({id, claim, "", std::nullopt, why});
+}
+
+// S1: cost of bit fields against accumulated areas.
+void bitmask_cost(Bench &bench, const SceneCaseOptions &size, const Effort &effort)
+{
+    const auto bench_case = bench.load({CaseSource::Kind::scene, "silhouette"}, size, 0);
+    const std::string common = " primitive=micropatch aggregation=nearest accel=hsm budget=16";
+    const std::vector<std::string> patterns = {"8x8", "16x16", "16x16j", "32x32"};
+    const double claimed[] = {1.07, 1.69, 2.07, 4.14};
+    std::vector<std::string> names = {"area layers=1" + common};
+    for (const std::string &pattern : patterns)
+        names.push_back("bitmask layers=1 pattern=" + pattern + common);
+    names.push_back("bitmask layers=2 pattern=16x16j" + common);
+    const Rows rows = measure(bench, *bench_case, names, effort, "S1");
+    Claim claim{
+        "S1",
+        "Cost over area accumulation (512x512 map, 16 x 16 budget): 8x8 1.07, 16x16 1.69, 16j 2.07, 32x32 4.14, "
+        "16j with two layers 3.58",
+        "", true, ""};
+    double previous = 0;
+    bool ordered = true;
+    for (size_t i = 0; i < patterns.size(); i++) {
+        const double ratio = time(rows, names[i + 1]) / time(rows, names[0]);
+        claim.measured += text("%s %.2f, ", patterns[i].c_str(), ratio);
+        claim.reproduced = *claim.reproduced && near(ratio, claimed[i], 0.25);
+        ordered = ordered && ratio >= previous;
+        previous = ratio;
+    }
+    const double layers = time(rows, names.back()) / time(rows, names[0]);
+    claim.measured += text("16j with two layers %.2f", layers);
+    claim.reproduced = *claim.reproduced && near(layers, 3.58, 0.25);
+    if (!*claim.reproduced)
+        claim.why = text("not all within 25 %%; the order of the patterns %s", ordered ? "is the paper's" : "differs");
+    bench.report().claims.push_back(claim);
+}
+
+// S2: the same over budgets; microquads and the MSSM.
+void budget_cost(Bench &bench, const SceneCaseOptions &size, const Effort &effort)
+{
+    const auto bench_case = bench.load({CaseSource::Kind::scene, "balls"}, size, 0);
+    Claim claim{
+        "S2",
+        "Budgets 18, 20, 12: 16j/area 1.6 to 2.1, 32x32/area 2.7 to 3.7, microquad/micropatch 1.01 to 1.14, MSSM "
+        "instead of HSM gains 1.06 to 1.88 (area) and 1.01 to 1.63 (16j)",
+        "", true, ""};
+    int met = 0, of = 0;
+    const auto within = [&](double value, double least, double most) {
+        of++;
+        met += value >= 0.9 * least && value <= 1.1 * most;
+        return value;
+    };
+    for (const int budget : {18, 20, 12}) {
+        const std::string common = text(" layers=1 aggregation=nearest budget=%d", budget);
+        const std::string area = "area primitive=micropatch accel=hsm" + common,
+                          area_mssm = "area primitive=micropatch accel=mssm" + common,
+                          bits = "bitmask primitive=micropatch accel=hsm" + common,
+                          bits_mssm = "bitmask primitive=micropatch accel=mssm" + common,
+                          fine = "bitmask primitive=micropatch pattern=32x32 accel=hsm" + common,
+                          quads = "bitmask primitive=microquad-rectangle accel=hsm" + common;
+        const Rows rows = measure(bench, *bench_case, {area, area_mssm, bits, bits_mssm, fine, quads}, effort, "S2");
+        claim.measured +=
+            text("budget %d: 16j/area %.2f, 32x32/area %.2f, microquad/micropatch %.2f, MSSM gains %.2f and "
+                 "%.2f; ",
+                 budget, within(time(rows, bits) / time(rows, area), 1.6, 2.1),
+                 within(time(rows, fine) / time(rows, area), 2.7, 3.7),
+                 within(time(rows, quads) / time(rows, bits), 1.01, 1.14),
+                 within(time(rows, area) / time(rows, area_mssm), 1.06, 1.88),
+                 within(time(rows, bits) / time(rows, bits_mssm), 1.01, 1.63));
+    }
+    claim.reproduced = met == of;
+    if (met != of)
+        claim.why = text("%d of %d ratios lie in the paper's ranges widened by 10 %%", met, of);
+    bench.report().claims.push_back(claim);
+}
+
+// S3, S15, S16: time and memory of the hierarchies.
+void build_cost(Bench &bench, const Effort &effort)
+{
+    const std::string hsm = "bitmask accel=hsm budget=8", ysm = "bitmask accel=ysm budget=8",
+                      mssm = "bitmask accel=mssm budget=8";
+    const double mssm_claims[] = {0.35, 1.15, 4.6, 6.7};
+    Claim s3{"S3", "MSSM/HSM build cost 0.35, 1.15, 4.6, 6.7 at 256, 512, 1024 and 2048 texels", "", true, ""};
+    Claim s15{"S15", "Memory: 1024 texels HSM 10.67, MSSM 88, YSM 14.67 MiB; 2048 texels 42.67, 384, 46.67 MiB", "",
+              true, ""};
+    Claim s16{"S16", "Build at 1024: YSM/HSM 1.77, MSSM/HSM 15.1; at 2048: 1.23 and 21.4", "", true, ""};
+    int i = 0;
+    for (const uint32_t map : {256u, 512u, 1024u, 2048u}) {
+        if (bench.quick() && map > 512)
+            break;
+        const auto bench_case = bench.load({CaseSource::Kind::scene, "balls"}, {160, 120, map, 1}, 0);
+        const Rows rows = measure(bench, *bench_case, {hsm, ysm, mssm}, effort, text("S3, S15, S16: map %u", map));
+        const auto ratio = [&](const std::string &name) {
+            return rows.at(name).times->build / rows.at(hsm).times->build;
+        };
+        const auto mebibytes = [&](const std::string &name) {
+            return static_cast<double>(rows.at(name).memory->persistent) / 1048576.0;
+        };
+        s3.measured += text("%u: %.2f, ", map, ratio(mssm));
+        s3.reproduced = *s3.reproduced && near(ratio(mssm), mssm_claims[i++], 0.25);
+        if (map < 1024)
+            continue;
+        s16.measured += text("%u: YSM/HSM %.2f, MSSM/HSM %.2f, ", map, ratio(ysm), ratio(mssm));
+        s16.reproduced = *s16.reproduced && near(ratio(ysm), map == 1024 ? 1.77 : 1.23, 0.25) &&
+                         near(ratio(mssm), map == 1024 ? 15.1 : 21.4, 0.25);
+        s15.measured += text("%u: %.2f, %.2f, %.2f MiB, ", map, mebibytes(hsm), mebibytes(mssm), mebibytes(ysm));
+        s15.reproduced = *s15.reproduced && mebibytes(hsm) <= (map == 1024 ? 10.67 : 42.67) &&
+                         mebibytes(mssm) <= (map == 1024 ? 88.0 : 384.0) &&
+                         mebibytes(ysm) <= (map == 1024 ? 14.67 : 46.67);
+    }
+    if (!*s3.reproduced)
+        s3.why = "not all within 25 %";
+    if (!*s16.reproduced)
+        s16.why = "not all within 25 %";
+    s15.why = *s15.reproduced ? "at most the claimed size; fan depth is one float and the pyramid starts at level 1"
+                              : "larger";
+    if (s15.measured.empty())
+        s15.reproduced = s16.reproduced = std::nullopt, s15.why = s16.why = "the quick run stops at 512 texels";
+    for (const Claim &claim : {s3, s15, s16})
+        bench.report().claims.push_back(claim);
+}
+
+// S4: the order of the errors.
+void quality(Bench &bench, const SceneCaseOptions &size, uint32_t rays)
+{
+    Claim claim{"S4",
+                "error(16j) close to error(32x32) and below error(16x16); balls: area > bitmask micropatch > bitmask "
+                "microquad; two layers OR-ed beat their maximum; the post filter does not raise error",
+                "", true, ""};
+    const auto hold = [&](bool holds, const std::string &what) {
+        if (!holds) {
+            claim.reproduced = false;
+            claim.why += (claim.why.empty() ? "not: " : "; ") + what;
+        }
+    };
+    for (const char *scene : {"balls", "silhouette"}) {
+        const auto bench_case = bench.load({CaseSource::Kind::scene, scene}, size, rays);
+        const std::string area = "area layers=1 primitive=micropatch", patch = "bitmask layers=1 primitive=micropatch",
+                          quad = "bitmask layers=1 primitive=microquad", coarse = quad + " pattern=16x16",
+                          fine = quad + " pattern=32x32", filtered = patch + " filter=5",
+                          united = "bitmask layers=2 primitive=microquad merge=union",
+                          darkest = "bitmask layers=2 primitive=microquad merge=max";
+        Effort counts;
+        counts.rounds = 0;
+        const Rows rows = measure(bench, *bench_case, {area, patch, quad, coarse, fine, filtered, united, darkest},
+                                  counts, std::string("S4: ") + scene);
+        claim.measured +=
+            text("%s: area %.4f, micropatch %.4f, microquad 16j %.4f, 16x16 %.4f, 32x32 %.4f, filtered %.4f, "
+                 "two layers %.4f, their maximum %.4f; ",
+                 scene, error(rows, area), error(rows, patch), error(rows, quad), error(rows, coarse),
+                 error(rows, fine), error(rows, filtered), error(rows, united), error(rows, darkest));
+        hold(error(rows, quad) < error(rows, coarse), std::string("16j below 16x16 on ") + scene);
+        hold(near(error(rows, quad), error(rows, fine), 0.15), std::string("16j within 15 % of 32x32 on ") + scene);
+        hold(error(rows, area) > error(rows, patch), std::string("area above bitmask on ") + scene);
+        hold(error(rows, patch) > error(rows, quad), std::string("micropatch above microquad on ") + scene);
+        hold(error(rows, united) < error(rows, darkest), std::string("layers OR-ed below their maximum on ") + scene);
+        hold(error(rows, filtered) <= error(rows, patch) + 1e-4,
+             std::string("filter does not raise error on ") + scene);
+    }
+    bench.report().claims.push_back(claim);
+}
+
+// S17: what a budget does to the work of a pixel.
+void budget_work(Bench &bench, const SceneCaseOptions &size, const Effort &effort)
+{
+    const auto bench_case = bench.load({CaseSource::Kind::scene, "balls"}, size, 0);
+    const std::string common = "bitmask layers=1 primitive=micropatch aggregation=nearest";
+    const std::vector<std::string> names = {common, common + " budget=10", common + " budget=9", common + " budget=5"};
+    const Rows rows = measure(bench, *bench_case, names, effort, "S17");
+    Claim claim{
+        "S17",
+        "Micro-occluders per active pixel 548 to 33 (budget 5), 1372 to 158 (budget 9), 3632 to 194 (budget 10); "
+        "active pixels rise as the budget falls; frame rate up 3.1 to 3.5 times",
+        "", true, ""};
+    uint64_t active = 0;
+    for (const std::string &name : names) {
+        const Row &row = rows.at(name);
+        claim.measured +=
+            text("%s: %.0f for each of %llu, %.1f times as fast; ",
+                 row.technique.settings.count("budget") ? row.technique.settings.at("budget").c_str() : "none",
+                 primitives(row), static_cast<unsigned long long>(row.stats->active),
+                 time(rows, names[0]) / time(rows, name));
+        claim.reproduced = *claim.reproduced && row.stats->active >= active;
+        active = row.stats->active;
+    }
+    claim.reproduced = *claim.reproduced && primitives(rows.at(names[3])) < primitives(rows.at(names[0])) / 10.0 &&
+                       time(rows, names[0]) / time(rows, names[3]) >= 3.1;
+    if (!*claim.reproduced)
+        claim.why =
+            "expected: a tenth of the micro-occluders and 3.1 times the speed at budget 5, and more active pixels at "
+            "each smaller budget";
+    bench.report().claims.push_back(claim);
+}
+
+} // namespace
+
+void run_seeds(Bench &bench)
+{
+    SceneCaseOptions size{640, 480, 512, 2};
+    Effort effort{7, 1.0};
+    uint32_t rays = 256;
+    if (bench.quick()) {
+        size = {120, 90, 256, 2};
+        effort = {3, 0.2};
+        rays = 64;
+    }
+    SceneCaseOptions small = size;
+    if (!bench.quick())
+        small.width = 320, small.height = 240;
+
+    bench.begin_suite("seeds", bench.quick() ? 9 : 11);
+    bitmask_cost(bench, size, effort);
+    budget_cost(bench, size, effort);
+    build_cost(bench, effort);
+    quality(bench, small, rays);
+    untried(bench, "S5", "131 scalar instructions for a 16j update",
+            "drivers do not tell how many instructions a part of a shader became");
+    for (const char *id : {"S6", "S7", "S8", "S9", "S10"})
+        untried(bench, id, "packets and contours", "contour extraction is not implemented yet");
+    for (const char *id : {"S11", "S12"})
+        untried(bench, id, "soft shadow maps (2005)", "the technique is not implemented yet");
+    untried(bench, "S13", "overlap of neighbouring micropatches", "a formula, not a measurement of this benchmark");
+    untried(bench, "S14", "FP16 accumulation saturates", "areas accumulate in 32 bits here");
+    budget_work(bench, small, effort);
+    untried(bench, "S18", "level map smoothing and blending", "quality budgets are not implemented yet");
+    untried(bench, "S19", "microrects", "not implemented yet");
+    untried(bench, "S20", "multisample interpolation", "not implemented yet");
+    for (const char *id : {"S21", "S22", "S23", "S24"})
+        untried(bench, id, "soft shadow volumes (2003)", "the technique is not implemented yet");
+}
