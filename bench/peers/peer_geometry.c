@@ -6,7 +6,7 @@
 #include <string.h>
 
 _Static_assert(offsetof(struct peer_params, light) == 64 && offsetof(struct peer_params, offset) == 80 &&
-                   offsetof(struct peer_params, light_plane) == 88 && offsetof(struct peer_params, padding) == 124 &&
+                   offsetof(struct peer_params, light_plane) == 88 && offsetof(struct peer_params, map_count) == 124 &&
                    sizeof(struct peer_params) == 128,
                "C and GLSL must agree, and 128 bytes of push constants are all there is everywhere");
 
@@ -233,5 +233,29 @@ const char *peer_geometry(const peer_info *info, const peer_inputs *inputs, stru
     out->row_w = to_vec4(combined.m[3]);
     out->far_depth = (float)far_depth;
     out->camera_precision = (float)depth_precision(inputs->camera.format);
+    out->map_count = (float)info->settings.light_samples;
     return NULL;
+}
+
+/* Distance along the map's axis, in the terms of peer_settings::nearest_blocker. */
+static double axis_distance(const mat4 *map, const double direction[3], double depth)
+{
+    double alpha;
+
+    if (is_perspective(map)) {
+        const double beta = depth_beta(map, &alpha);
+        const double z = beta / ((depth - alpha) * sqrt(dot3(map->m[3], map->m[3])));
+        return z > 0.0 ? z : INFINITY; /* rounding around an infinite far plane */
+    }
+    return (dot3(map->m[2], direction) > 0.0 ? depth : 1.0 - depth) / sqrt(dot3(map->m[2], map->m[2]));
+}
+
+double peer_nearest_blocker(const peer_depth *map, const peer_light *light, double least, double greatest)
+{
+    const mat4 view = from_columns(map->view_matrix), projection = from_columns(map->projection);
+    const mat4 combined = multiply(&projection, &view);
+    const double a = axis_distance(&combined, light->direction, least);
+    const double b = axis_distance(&combined, light->direction, greatest);
+
+    return fmax(fmin(a, b), 0.0);
 }

@@ -5,14 +5,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "average.comp.h"
 #include "copy.comp.h"
 #include "hard.comp.h"
+#include "march.comp.h"
 #include "pcf.comp.h"
 #include "pcss.comp.h"
 #include "peer_geometry.h"
 
 #define BINDING_COUNT 3u
 #define MAX_TAPS 1024u
+/* Some drivers end a shader without a word after 65,535 rounds of its loops. */
+#define MAX_MARCH_STEPS 60000u
 #define MAX_EXTENT 16384u
 
 struct peer {
@@ -39,6 +43,8 @@ static const peer_row rows[PEER_KIND_COUNT] = {
     [PEER_HARD] = {"hard", hard_comp, sizeof hard_comp, 32, 8},
     [PEER_PCF] = {"pcf", pcf_comp, sizeof pcf_comp, 32, 8},
     [PEER_PCSS] = {"pcss", pcss_comp, sizeof pcss_comp, 32, 8},
+    [PEER_MARCH] = {"march", march_comp, sizeof march_comp, 32, 8},
+    [PEER_AVERAGE] = {"average", average_comp, sizeof average_comp, 32, 8},
 };
 
 static bool fail(gpu *g, const char *what, VkResult result)
@@ -127,8 +133,13 @@ static bool create_sets(gpu *g, peer *p)
 static bool create_pipeline(gpu *g, peer *p)
 {
     const peer_row *row = &rows[p->info.kind];
-    const uint32_t constants[] = {p->group_width, p->group_height, p->info.settings.blocker_taps,
-                                  p->info.settings.filter_taps, p->info.directional};
+    const uint32_t constants[] = {p->group_width,
+                                  p->group_height,
+                                  p->info.settings.blocker_taps,
+                                  p->info.settings.filter_taps,
+                                  p->info.directional,
+                                  p->info.settings.light_samples,
+                                  p->info.settings.march_steps};
     VkSpecializationMapEntry entries[sizeof constants / sizeof constants[0]];
     const VkSpecializationInfo specialization = {sizeof constants / sizeof constants[0], entries, sizeof constants,
                                                  constants};
@@ -159,15 +170,39 @@ static bool create_pipeline(gpu *g, peer *p)
     return result == VK_SUCCESS || fail(g, "vkCreateComputePipelines", result);
 }
 
+/* What zero stands for. */
+static peer_settings with_defaults(peer_settings s, peer_kind kind)
+{
+    if (!s.blocker_taps)
+        s.blocker_taps = 16;
+    if (!s.filter_taps)
+        s.filter_taps = 32;
+    if (!s.light_samples)
+        s.light_samples = kind == PEER_AVERAGE ? 64 : 16;
+    if (!s.march_steps)
+        s.march_steps = 16;
+    return s;
+}
+
+static bool in_range(const peer_settings *s)
+{
+    return s->blocker_taps <= MAX_TAPS && s->filter_taps <= MAX_TAPS && s->light_samples <= MAX_TAPS &&
+           s->march_steps <= MAX_TAPS && s->pcf_kernel >= 0.0 && s->nearest_blocker >= 0.0;
+}
+
 bool peer_create(gpu *g, const peer_info *info, peer **out)
 {
+    const peer_settings settings = with_defaults(info->settings, info->kind);
     peer *p;
 
     *out = NULL;
-    if ((unsigned)info->kind >= PEER_KIND_COUNT || info->settings.blocker_taps > MAX_TAPS ||
-        info->settings.filter_taps > MAX_TAPS || !(info->settings.pcf_kernel >= 0.0) ||
-        !(info->settings.nearest_blocker >= 0.0)) {
+    if ((unsigned)info->kind >= PEER_KIND_COUNT || !in_range(&settings)) {
         snprintf(g->error, sizeof g->error, "peer kind or settings out of range");
+        return false;
+    }
+    if (info->kind == PEER_MARCH && settings.light_samples * settings.march_steps > MAX_MARCH_STEPS) {
+        snprintf(g->error, sizeof g->error, "march: %u samples of %u steps each, expected at most %u steps in all",
+                 settings.light_samples, settings.march_steps, MAX_MARCH_STEPS);
         return false;
     }
     p = calloc(1, sizeof *p);
@@ -176,10 +211,7 @@ bool peer_create(gpu *g, const peer_info *info, peer **out)
         return false;
     }
     p->info = *info;
-    if (!p->info.settings.blocker_taps)
-        p->info.settings.blocker_taps = 16;
-    if (!p->info.settings.filter_taps)
-        p->info.settings.filter_taps = 32;
+    p->info.settings = settings;
     p->set_count = info->max_recordings ? info->max_recordings : 4;
     p->group_width = rows[info->kind].group_width;
     p->group_height = rows[info->kind].group_height;

@@ -34,7 +34,7 @@ struct peer_params {
     float far_depth; /* camera depth where nothing was rendered: 0 or 1 */
     float slope_limit;
     float perspective; /* 1 for a perspective map, 0 for an orthographic one */
-    float padding;
+    float map_count;   /* average: how many maps there are in all */
 };
 
 #endif

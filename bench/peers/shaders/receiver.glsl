@@ -12,7 +12,11 @@ layout(push_constant) uniform params_block
 };
 layout(set = 0, binding = 0) uniform texture2D camera_depth;
 layout(set = 0, binding = 1) uniform texture2D map_depth;
+#ifdef PEER_ACCUMULATES
+layout(set = 0, binding = 2, r32f) uniform image2D visibility;
+#else
 layout(set = 0, binding = 2) uniform writeonly image2D visibility;
+#endif
 
 struct receiver {
     vec2 uv;
