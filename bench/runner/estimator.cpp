@@ -59,6 +59,8 @@ std::unique_ptr<Estimator> make_estimator(gpu &g, DeviceCase &device_case, const
         return make_library_estimator(g, device_case, technique, stats);
     case TechniqueKind::dispatch:
         return make_peer_estimator(g, device_case, technique);
+    case TechniqueKind::average:
+        return make_average_estimator(g, device_case, technique);
     }
     fail("technique %s has no estimator", technique.name.c_str());
 }

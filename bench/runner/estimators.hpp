@@ -6,6 +6,11 @@
 std::unique_ptr<Estimator> make_library_estimator(gpu &g, DeviceCase &device_case, const Technique &technique,
                                                   bool stats);
 std::unique_ptr<Estimator> make_peer_estimator(gpu &g, DeviceCase &device_case, const Technique &technique);
+std::unique_ptr<Estimator> make_average_estimator(gpu &g, DeviceCase &device_case, const Technique &technique);
+
+// What a peer is told about a depth buffer and about the light.
+peer_depth to_peer(const gpu_image &image, const Frustum &frustum);
+peer_light to_peer(const Light &light);
 
 // A storage image for the result, of the camera's size and R32F.
 gpu_image make_output(gpu &g, const FloatImage &size);

@@ -47,7 +47,9 @@ enum Family : unsigned {
     ON_HARD = 1u << 3,
     ON_PCF = 1u << 4,
     ON_PCSS = 1u << 5,
-    ON_MAPS = ON_LIBRARY | ON_AUTO | ON_COPY | ON_HARD | ON_PCF | ON_PCSS, // reads the case's maps
+    ON_MARCH = 1u << 6,
+    ON_AVERAGE = 1u << 7,
+    ON_MAPS = ON_LIBRARY | ON_AUTO | ON_COPY | ON_HARD | ON_PCF | ON_PCSS | ON_MARCH, // reads the case's maps
 };
 
 struct Name {
@@ -62,6 +64,8 @@ const std::vector<Name> technique_list = {
     {"hard", ON_HARD, TechniqueKind::dispatch, SOFTSH_TECHNIQUE_AUTO},
     {"pcf", ON_PCF, TechniqueKind::dispatch, SOFTSH_TECHNIQUE_AUTO},
     {"pcss", ON_PCSS, TechniqueKind::dispatch, SOFTSH_TECHNIQUE_AUTO},
+    {"march", ON_MARCH, TechniqueKind::dispatch, SOFTSH_TECHNIQUE_AUTO},
+    {"average", ON_AVERAGE, TechniqueKind::average, SOFTSH_TECHNIQUE_AUTO},
     {"area", ON_LIBRARY, TechniqueKind::library, SOFTSH_TECHNIQUE_AREA},
     {"bitmask", ON_LIBRARY, TechniqueKind::library, SOFTSH_TECHNIQUE_BITMASK},
     {"auto", ON_AUTO, TechniqueKind::library, SOFTSH_TECHNIQUE_AUTO},
@@ -141,6 +145,15 @@ const std::vector<Setting> &setting_list()
          [](Technique &t, const std::string &v) { t.peer_options.blocker_taps = number("blockers", v, 1, 1024); }},
         {"taps", "N: filter taps", ON_PCF | ON_PCSS,
          [](Technique &t, const std::string &v) { t.peer_options.filter_taps = number("taps", v, 1, 1024); }},
+        {"samples", "N: points of the light", ON_MARCH | ON_AVERAGE,
+         [](Technique &t, const std::string &v) { t.peer_options.light_samples = number("samples", v, 1, 1024); }},
+        {"steps", "N: most steps of a ray", ON_MARCH,
+         [](Technique &t, const std::string &v) { t.peer_options.march_steps = number("steps", v, 1, 1024); }},
+        {"near", "plane | fit: no blocker is nearer than the map's near plane, or than its nearest depth",
+         ON_PCSS | ON_MARCH,
+         [](Technique &t, const std::string &v) {
+             t.fit_near = choose("near", v, {{"plane", 0}, {"fit", 1}});
+         }},
     };
     return list;
 }

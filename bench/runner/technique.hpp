@@ -14,6 +14,7 @@
 enum class TechniqueKind {
     library,
     dispatch, // one dispatch of bench/peers on the depth buffers of the case
+    average,  // a shadow map of the scene's mesh for each of many points of the light
 };
 
 struct Technique {
@@ -22,6 +23,7 @@ struct Technique {
     TechniqueKind kind = TechniqueKind::library;
     peer_kind peer = PEER_KIND_COUNT;
     peer_settings peer_options{};
+    bool fit_near = false;     // a peer knows the nearest depth of the map
     bool automatic = false;    // the library without settings
     softsh_settings library{}; // unless automatic
     softsh_accel accel = SOFTSH_ACCEL_AUTO;
