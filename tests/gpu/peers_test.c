@@ -27,12 +27,15 @@ typedef struct eye {
     double at[3], right[3], down[3], forward[3];
     double tan_x, tan_y; /* perspective: of half the field of view; orthographic: half sizes */
     bool orthographic, reversed;
+    bool empty; /* sees the ground alone */
     uint32_t width, height;
 } eye;
 
 typedef struct scene {
     bool directional, reversed;
+    bool empty; /* no blocker */
     uint32_t map_size;
+    eye map_eye;
     peer_inputs inputs;
     gpu_image camera, map, visibility;
     float truth[WIDTH * HEIGHT]; /* negative where the camera sees nothing */
@@ -81,7 +84,7 @@ static double cast(const eye *e, uint32_t x, uint32_t y, double hit[3])
         start[i] = e->at[i] + (e->orthographic ? aside : 0.0);
         way[i] = e->forward[i] + (e->orthographic ? 0.0 : aside);
     }
-    for (int plane = 1; plane >= 0; plane--) {
+    for (int plane = e->empty ? 0 : 1; plane >= 0; plane--) {
         const double z = (plane - start[1]) / way[1];
         if (!(z > NEAR && z < FAR))
             continue;
@@ -108,7 +111,7 @@ static float visible_fraction(const scene *s, const double p[3])
     const peer_light *light = &s->inputs.light;
     unsigned seen = 0, count = 0;
 
-    if (p[1] > 0.5)
+    if (s->empty || p[1] > 0.5)
         return 1.0f;
     for (int i = 0; i < 64; i++)
         for (int j = 0; j < 64; j++) {
@@ -132,6 +135,12 @@ static float visible_fraction(const scene *s, const double p[3])
     return (float)seen / (float)count;
 }
 
+static void upload_texels(gpu_image *image, const float *texels)
+{
+    assert_true(gpu_image_upload(&device, image, texels, (size_t)image->width * image->height * sizeof *texels,
+                                 VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL));
+}
+
 static void upload(const eye *e, VkFormat format, gpu_image *image, peer_depth *depth)
 {
     const gpu_image_info info = {
@@ -143,9 +152,9 @@ static void upload(const eye *e, VkFormat format, gpu_image *image, peer_depth *
     for (uint32_t y = 0; y < e->height; y++)
         for (uint32_t x = 0; x < e->width; x++)
             texels[y * e->width + x] = device_depth(e, cast(e, x, y, hit));
-    assert_true(gpu_image_create(&device, &info, image));
-    assert_true(gpu_image_upload(&device, image, texels, (size_t)e->width * e->height * sizeof *texels,
-                                 VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL));
+    if (!image->image)
+        assert_true(gpu_image_create(&device, &info, image));
+    upload_texels(image, texels);
     free(texels);
     depth->view = image->view;
     depth->layout = image->layout;
@@ -165,6 +174,7 @@ static void scene_create(scene *s)
                         .tan_x = 0.6,
                         .tan_y = 0.45,
                         .reversed = s->reversed,
+                        .empty = s->empty,
                         .width = WIDTH,
                         .height = HEIGHT};
     const double size = s->directional ? 4.0 : 1.0;
@@ -176,6 +186,7 @@ static void scene_create(scene *s)
                      .tan_y = size,
                      .orthographic = s->directional,
                      .reversed = s->reversed,
+                     .empty = s->empty,
                      .width = s->map_size,
                      .height = s->map_size};
     const peer_light light = {.center = {0.0, LIGHT_HEIGHT, 0.0},
@@ -189,6 +200,7 @@ static void scene_create(scene *s)
 
     upload(&camera, VK_FORMAT_D32_SFLOAT, &s->camera, &s->inputs.camera);
     upload(&map, VK_FORMAT_R32_SFLOAT, &s->map, &s->inputs.map);
+    s->map_eye = map;
     s->inputs.light = light;
     assert_true(gpu_image_create(&device, &info, &s->visibility));
     cmd = gpu_begin(&device);
@@ -219,6 +231,31 @@ static void run(scene *s, peer_kind kind, peer_settings settings)
     cmd = gpu_begin(&device);
     assert_true(peer_record(&device, p, cmd, &s->inputs));
     assert_true(gpu_submit(&device, cmd));
+    peer_destroy(&device, p);
+    assert_true(gpu_image_read(&device, &s->visibility, s->result, sizeof s->result));
+}
+
+/* The mean of `count` maps; `spread`: from points of the rectangular light, else all the same. */
+static void run_average(scene *s, uint32_t count, bool spread)
+{
+    const peer_info info = {.kind = PEER_AVERAGE, .settings = {.light_samples = count}, .directional = s->directional};
+    static const float zeros[WIDTH * HEIGHT];
+    peer *p;
+
+    assert_true(gpu_image_upload(&device, &s->visibility, zeros, sizeof zeros, VK_IMAGE_LAYOUT_GENERAL));
+    assert_true(peer_create(&device, &info, &p));
+    for (uint32_t i = 0; i < count; i++) {
+        VkCommandBuffer cmd;
+
+        if (spread) {
+            s->map_eye.at[0] = s->inputs.light.half_u[0] * (2.0 * (i + 0.5) / count - 1.0);
+            s->map_eye.at[2] = s->inputs.light.half_v[2] * (2.0 * fmod(i * 0.61803399 + 0.5, 1.0) - 1.0);
+            upload(&s->map_eye, VK_FORMAT_R32_SFLOAT, &s->map, &s->inputs.map);
+        }
+        cmd = gpu_begin(&device);
+        assert_true(peer_record(&device, p, cmd, &s->inputs));
+        assert_true(gpu_submit(&device, cmd));
+    }
     peer_destroy(&device, p);
     assert_true(gpu_image_read(&device, &s->visibility, s->result, sizeof s->result));
 }
@@ -260,7 +297,7 @@ static peer_settings near_blockers(const scene *s)
 static void check_all(scene *s)
 {
     const peer_settings defaults = {0};
-    double hard, pcss, sure;
+    double hard, pcss, march, sure;
 
     scene_create(s);
     run(s, PEER_COPY, defaults);
@@ -274,9 +311,13 @@ static void check_all(scene *s)
     assert_true(sure > 0.99);
     run(s, PEER_PCSS, near_blockers(s));
     pcss = error(s, &sure);
-    print_message("mean absolute error: hard %.4f, pcss %.4f\n", hard, pcss);
     assert_true(sure > 0.999);
     assert_true(pcss < 0.025 && pcss < 0.25 * hard);
+    run(s, PEER_MARCH, near_blockers(s));
+    march = error(s, &sure);
+    print_message("mean absolute error: hard %.4f, pcss %.4f, march %.4f\n", hard, pcss, march);
+    assert_true(sure > 0.999);
+    assert_true(march < 0.03 && march < 0.25 * hard);
     scene_destroy(s);
 }
 
@@ -326,18 +367,193 @@ static void test_resolution(void **state)
     scene_destroy(&fine);
 }
 
+/* Many rays of many steps come near the truth, and where that is 0 or 1 they all agree but for single texels. */
+static void check_converged_march(scene *s)
+{
+    peer_settings settings = near_blockers(s);
+    unsigned dark = 0, all_dark = 0, lit = 0, all_lit = 0;
+    double mean, sure;
+
+    settings.light_samples = 256;
+    settings.march_steps = 64;
+    scene_create(s);
+    run(s, PEER_MARCH, settings);
+    mean = error(s, &sure);
+    for (size_t i = 0; i < WIDTH * HEIGHT; i++) {
+        dark += s->truth[i] == 0.0f;
+        all_dark += s->truth[i] == 0.0f && s->result[i] == 0.0f;
+        lit += s->truth[i] == 1.0f;
+        all_lit += s->truth[i] == 1.0f && s->result[i] == 1.0f;
+    }
+    print_message("mean absolute error: march of many rays %.4f; umbra %u of %u, lit %u of %u\n", mean, all_dark, dark,
+                  all_lit, lit);
+    assert_true(sure > 0.999 && mean < 0.009);
+    assert_true(dark > 100 && all_dark > 0.99 * dark && all_lit > 0.99 * lit);
+    scene_destroy(s);
+}
+
+static void test_march(void **state)
+{
+    static scene rectangle = {.map_size = 512}, sun = {.map_size = 512, .directional = true};
+    (void)state;
+    check_converged_march(&rectangle);
+    check_converged_march(&sun);
+}
+
+/* Maps from points of the light: as near to the truth as their number allows. One map, however often, is a hard shadow;
+ * 49 times 1/49 is not 1 in floats. */
+static void test_average(void **state)
+{
+    static scene s = {.map_size = 256};
+    static float hard[WIDTH * HEIGHT];
+    const peer_settings defaults = {0};
+    double mean, sure;
+    (void)state;
+
+    scene_create(&s);
+    run(&s, PEER_HARD, defaults);
+    memcpy(hard, s.result, sizeof hard);
+    run_average(&s, 1, false);
+    assert_memory_equal(hard, s.result, sizeof hard);
+    run_average(&s, 49, false);
+    assert_memory_equal(hard, s.result, sizeof hard);
+    run_average(&s, 64, true);
+    mean = error(&s, &sure);
+    print_message("mean absolute error: average %.4f\n", mean);
+    assert_true(sure > 0.999 && mean < 0.015);
+    scene_destroy(&s);
+}
+
+/* Nothing shadows itself: the ground alone is lit, exactly. */
+static void test_empty(void **state)
+{
+    const peer_settings defaults = {0};
+    (void)state;
+
+    for (int directional = 0; directional < 2; directional++) {
+        scene *s = calloc(1, sizeof *s);
+
+        assert_non_null(s);
+        s->directional = directional;
+        s->empty = true;
+        s->map_size = 256;
+        scene_create(s);
+        for (int kind = 0; kind < PEER_KIND_COUNT; kind++) {
+            if (kind == PEER_AVERAGE)
+                run_average(s, 3, false);
+            else
+                run(s, (peer_kind)kind, defaults);
+            for (size_t i = 0; i < WIDTH * HEIGHT; i++)
+                assert_true(s->result[i] == 1.0f);
+        }
+        scene_destroy(s);
+        free(s);
+    }
+}
+
+/* xorshift32 */
+static uint32_t random_bits(uint32_t *state)
+{
+    *state ^= *state << 13;
+    *state ^= *state >> 17;
+    *state ^= *state << 5;
+    return *state;
+}
+
+/* Colour formats hold any float. */
+static void make_hostile(gpu_image *image, peer_depth *depth, uint32_t seed)
+{
+    const gpu_image_info info = {.format = VK_FORMAT_R32_SFLOAT,
+                                 .width = image->width,
+                                 .height = image->height,
+                                 .usage = VK_IMAGE_USAGE_SAMPLED_BIT};
+    static const float hostile[] = {NAN, INFINITY, -INFINITY, -1.0f, 2.0f, 1e30f, 1e-40f, -0.0f, 0.0f, 1.0f};
+    const size_t count = (size_t)info.width * info.height;
+    float *texels = malloc(count * sizeof *texels);
+
+    assert_non_null(texels);
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t choice = random_bits(&seed) % 20;
+        texels[i] = choice < 10 ? hostile[choice] : (float)(random_bits(&seed) >> 8) * 0x1p-24f;
+    }
+    gpu_image_destroy(&device, image);
+    assert_true(gpu_image_create(&device, &info, image));
+    upload_texels(image, texels);
+    free(texels);
+    depth->view = image->view;
+    depth->layout = image->layout;
+    depth->format = image->format;
+}
+
+/* Whatever the depths are, results are fractions. */
+static void test_hostile(void **state)
+{
+    const peer_settings defaults = {0};
+    (void)state;
+
+    for (int variant = 0; variant < 4; variant++) {
+        scene *s = calloc(1, sizeof *s);
+
+        assert_non_null(s);
+        s->directional = variant & 1;
+        s->reversed = variant >> 1;
+        s->map_size = 128;
+        scene_create(s);
+        make_hostile(&s->camera, &s->inputs.camera, 1u + (uint32_t)variant);
+        make_hostile(&s->map, &s->inputs.map, 101u + (uint32_t)variant);
+        for (int kind = 0; kind < PEER_KIND_COUNT; kind++) {
+            if (kind == PEER_AVERAGE)
+                run_average(s, 3, false);
+            else
+                run(s, (peer_kind)kind, defaults);
+            for (size_t i = 0; i < WIDTH * HEIGHT; i++)
+                assert_true(s->result[i] >= 0.0f && s->result[i] <= 1.0f);
+        }
+        scene_destroy(s);
+        free(s);
+    }
+}
+
+/* The blocker is 3 below the light; an orthographic map counts from its near plane. */
+static void test_nearest_blocker(void **state)
+{
+    (void)state;
+
+    for (int variant = 0; variant < 4; variant++) {
+        scene *s = calloc(1, sizeof *s);
+        double at_blocker, at_ground, distance;
+
+        assert_non_null(s);
+        s->directional = variant & 1;
+        s->reversed = variant >> 1;
+        s->map_size = 16;
+        scene_create(s);
+        at_blocker = (double)device_depth(&s->map_eye, LIGHT_HEIGHT - 1.0);
+        at_ground = (double)device_depth(&s->map_eye, LIGHT_HEIGHT);
+        distance = peer_nearest_blocker(&s->inputs.map, &s->inputs.light, fmin(at_blocker, at_ground),
+                                        fmax(at_blocker, at_ground));
+        assert_true(fabs(distance - (s->directional ? 3.0 - NEAR : 3.0)) < 1e-4);
+        scene_destroy(s);
+        free(s);
+    }
+}
+
 /* Mismatched lights and maps are refused, not guessed at. */
 static void test_refused(void **state)
 {
     static scene s = {.map_size = 64};
     const peer_info info = {.kind = PEER_HARD, .directional = true};
     const peer_info unknown = {.kind = PEER_KIND_COUNT};
+    const peer_info too_many = {.kind = PEER_MARCH, .settings = {.light_samples = 1025}};
+    const peer_info too_long = {.kind = PEER_MARCH, .settings = {.light_samples = 1024, .march_steps = 64}};
     peer *p;
     VkCommandBuffer cmd;
     (void)state;
 
     assert_false(peer_create(&device, &unknown, &p));
     assert_null(p);
+    assert_false(peer_create(&device, &too_many, &p));
+    assert_false(peer_create(&device, &too_long, &p));
     scene_create(&s);
     assert_true(peer_create(&device, &info, &p));
     cmd = gpu_begin(&device);
@@ -373,7 +589,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rectangle),   cmocka_unit_test(test_rectangle_reversed),
         cmocka_unit_test(test_directional), cmocka_unit_test(test_directional_reversed),
-        cmocka_unit_test(test_resolution),  cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_resolution),  cmocka_unit_test(test_march),
+        cmocka_unit_test(test_average),     cmocka_unit_test(test_empty),
+        cmocka_unit_test(test_hostile),     cmocka_unit_test(test_nearest_blocker),
+        cmocka_unit_test(test_refused),
     };
 
     return cmocka_run_group_tests(tests, setup, teardown);
