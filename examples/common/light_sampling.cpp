@@ -1,5 +1,6 @@
 #include "light_sampling.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <glm/gtc/constants.hpp>
@@ -60,4 +61,58 @@ glm::dvec3 to_light_sample(const Light &light, const glm::dvec3 &p, double s, do
 glm::dvec3 to_light_centre(const Light &light, const glm::dvec3 &p)
 {
     return light.shape == LightShape::directional ? -glm::normalize(light.direction) : light.centre - p;
+}
+
+LightOutline light_outline(const Light &light, const glm::dvec3 &p, double far_away)
+{
+    switch (light.shape) {
+    case LightShape::rectangle:
+    case LightShape::disc:
+        return {light.centre - p, light.half_u, light.half_v, light.shape == LightShape::disc};
+    case LightShape::sphere: {
+        LightOutline outline{glm::dvec3(0.0), glm::dvec3(0.0), glm::dvec3(0.0), true};
+        const glm::dvec3 axis = light.centre - p;
+        const double distance2 = glm::dot(axis, axis);
+        const double radius2 = glm::dot(light.half_u, light.half_u);
+        if (!(distance2 > radius2))
+            return outline;
+        const double share = 1.0 - radius2 / distance2;
+        const double circle = std::sqrt(radius2 * share);
+        perpendicular(axis / std::sqrt(distance2), outline.half_u, outline.half_v);
+        outline.centre = axis * share;
+        outline.half_u *= circle;
+        outline.half_v *= circle;
+        return outline;
+    }
+    case LightShape::directional:
+        break;
+    }
+    LightOutline outline{-glm::normalize(light.direction) * far_away, glm::dvec3(0.0), glm::dvec3(0.0), true};
+    perpendicular(outline.centre / far_away, outline.half_u, outline.half_v);
+    const double radius = std::tan(light.angular_radius) * far_away;
+    outline.half_u *= radius;
+    outline.half_v *= radius;
+    return outline;
+}
+
+double highest_above(const LightOutline &outline, const glm::dvec3 &normal)
+{
+    const double u = std::fabs(glm::dot(outline.half_u, normal)), v = std::fabs(glm::dot(outline.half_v, normal));
+    return glm::dot(outline.centre, normal) + (outline.round ? std::sqrt(u * u + v * v) : u + v);
+}
+
+uint32_t light_grid(uint32_t samples)
+{
+    return static_cast<uint32_t>(std::sqrt(static_cast<double>(samples)) + 1e-9);
+}
+
+std::vector<LightCell> light_cells(uint32_t grid)
+{
+    std::vector<LightCell> cells;
+    for (uint32_t block_j = 0; block_j < grid; block_j += 4)
+        for (uint32_t half_i = 0; half_i < grid; half_i += 2)
+            for (uint32_t j = block_j; j < std::min(block_j + 4, grid); j++)
+                for (uint32_t i = half_i; i < std::min(half_i + 2, grid); i++)
+                    cells.push_back({i, j});
+    return cells;
 }

@@ -1,18 +1,14 @@
 #include "truth.hpp"
 
-#include <algorithm>
-#include <atomic>
-#include <cmath>
-#include <exception>
 #include <filesystem>
-#include <mutex>
-#include <thread>
 
 #include <unistd.h>
 
 #include "error.hpp"
 #include "light_sampling.hpp"
 #include "ray_scene.hpp"
+#include "ray_shadow.hpp"
+#include "receivers.hpp"
 
 namespace fs = std::filesystem;
 
@@ -22,96 +18,59 @@ namespace
 // Part of the cache's key: change it with anything that changes results.
 constexpr uint32_t truth_version = 1;
 
-// A well-mixed hash of a counter (splitmix64), so that every pixel has its own reproducible random numbers.
-uint64_t mix(uint64_t x)
-{
-    x += 0x9e3779b97f4a7c15u;
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-    return x ^ (x >> 31);
-}
-
-struct Receiver {
-    glm::dvec3 position; // in mesh space
-    glm::dvec3 normal;   // of the triangle, towards the viewer
-    double offset;       // how far to leave the surface so as not to hit it
-};
-
-class Tracer
+// One sample in each cell of a grid, in double precision and traced whatever the receiver's plane says.
+class TruthSampler final : public LightSampler
 {
   public:
-    Tracer(const Mesh &mesh, const glm::dvec3 &origin, const DepthView &camera, const Light &light,
-           const TruthOptions &options)
-        : mesh_(mesh), rays_(mesh), depth_(camera.depth), reversed_(camera.frustum.reversed), light_(light),
-          grid_(static_cast<uint32_t>(std::sqrt(static_cast<double>(options.samples)) + 1e-9)),
-          light_near_(options.light_near)
+    TruthSampler(const Light &light, const Receivers &receivers, const TruthOptions &options)
+        : light_(light), reach_(receivers.reach), grid_(light_grid(options.samples)), cells_(light_cells(grid_)),
+          seed_(options.seed * 0xd1342543de82ef95u)
     {
-        // Everything in mesh space, where coordinates are small.
-        glm::dmat4 view = camera.frustum.view;
-        view[3] += glm::dvec4(glm::dmat3(view) * origin, 0.0);
-        to_mesh_ = glm::inverse(camera.frustum.projection * view);
+        light_.centre -= receivers.origin;
+    }
+    uint32_t count() const override
+    {
+        return grid_ * grid_;
+    }
+    bool aim(const Receiver &receiver, const glm::dvec3 &start, SegmentList &out) const override
+    {
+        const uint64_t base = seed_ + receiver.pixel * (static_cast<uint64_t>(grid_) * grid_);
+        for (uint32_t k = 0; k < count(); k++) {
+            const LightCell cell = cells_[k];
+            const uint64_t random = mix(base + cell.j * grid_ + cell.i);
+            const double s = (cell.i + static_cast<double>(random & 0xffffffffu) * 0x1p-32) / grid_;
+            const double t = (cell.j + static_cast<double>(random >> 32) * 0x1p-32) / grid_;
+            const glm::vec3 segment(to_light_sample(light_, start, s, t, reach_));
+            out.x[k] = segment.x;
+            out.y[k] = segment.y;
+            out.z[k] = segment.z;
+        }
+        return true;
+    }
+
+  private:
+    Light light_; // in mesh space
+    double reach_;
+    uint32_t grid_;
+    std::vector<LightCell> cells_;
+    uint64_t seed_;
+};
+
+// Whether a receiver counts in the mask: not one that sees the light under less than about a degree, where a
+// tessellated surface's own terminator decides more than any occluder.
+class Mask
+{
+  public:
+    Mask(const Light &light, const glm::dvec3 &origin, double light_near) : light_(light), light_near_(light_near)
+    {
         light_.centre -= origin;
-        const Bounds bounds = mesh.bounds();
-        const double diagonal = glm::length(bounds.size());
-        far_away_ = 2.0 * diagonal + 1.0;
-        offset_ = 3e-5 * diagonal;
         if (light.shape == LightShape::rectangle || light.shape == LightShape::disc) {
             const glm::dvec3 forward = glm::cross(light.half_v, light.half_u);
             const double length = glm::length(forward);
             light_forward_ = length > 0.0 ? forward / length : glm::dvec3(0.0);
         }
     }
-
-    void row(uint32_t y, Truth &truth) const
-    {
-        for (uint32_t x = 0; x < depth_.width; x++) {
-            Receiver receiver;
-            if (!find_receiver(x, y, receiver))
-                continue;
-            truth.mask.at(x, y) = faces_light(receiver) ? 1.0f : 0.0f;
-            truth.visibility.at(x, y) = visibility(receiver, static_cast<uint64_t>(y) * depth_.width + x);
-        }
-    }
-
-  private:
-    glm::dvec3 unproject(uint32_t x, uint32_t y, double depth) const
-    {
-        const glm::dvec4 p = to_mesh_ * glm::dvec4(2.0 * (x + 0.5) / depth_.width - 1.0,
-                                                   2.0 * (y + 0.5) / depth_.height - 1.0, depth, 1.0);
-        return glm::dvec3(p) / p.w;
-    }
-
-    bool find_receiver(uint32_t x, uint32_t y, Receiver &out) const
-    {
-        const float depth = depth_.at(x, y);
-        const float background = reversed_ ? 0.0f : 1.0f;
-        if (!(depth >= 0.0f && depth <= 1.0f) || depth == background)
-            return false;
-        out.position = unproject(x, y, depth);
-        // One step of the depth format, in world units along the view ray.
-        const double step = glm::length(unproject(x, y, std::nextafter(depth, 1.0f - background)) - out.position);
-        const glm::dvec3 size = glm::abs(out.position);
-        out.offset = std::max(offset_, 4.0 * step + 4e-6 * std::max(size.x, std::max(size.y, size.z)));
-
-        // The triangle behind the pixel gives the plane; look for it only around the depth the buffer has.
-        const glm::dvec3 start = unproject(x, y, 1.0 - background);
-        const glm::dvec3 along = out.position - start;
-        const double length = glm::length(along);
-        for (double window = 4.0; window < 5000.0; window *= 8.0) {
-            const double t = window * out.offset / length;
-            const int64_t hit = rays_.nearest(glm::vec3(start), glm::vec3(along),
-                                              static_cast<float>(std::max(0.0, 1.0 - t)), static_cast<float>(1.0 + t));
-            if (hit >= 0 && plane(static_cast<size_t>(hit), along, out.normal))
-                return true;
-        }
-        // A silhouette the rasteriser and the ray see differently: take the surface to face the viewer.
-        out.normal = -along / length;
-        return true;
-    }
-
-    // Not counting those that see the light under less than about a degree, where a tessellated surface's own
-    // terminator decides more than any occluder.
-    bool faces_light(const Receiver &receiver) const
+    bool has(const Receiver &receiver) const
     {
         const glm::dvec3 to_light = to_light_centre(light_, receiver.position);
         if (!(glm::dot(receiver.normal, to_light) > 0.02 * glm::length(to_light)))
@@ -119,51 +78,10 @@ class Tracer
         return light_forward_ == glm::dvec3(0.0) || -glm::dot(to_light, light_forward_) > light_near_;
     }
 
-    bool plane(size_t triangle, const glm::dvec3 &along, glm::dvec3 &normal) const
-    {
-        const uint32_t *index = &mesh_.indices[triangle * 3];
-        const glm::dvec3 a(mesh_.positions[index[0]]), b(mesh_.positions[index[1]]), c(mesh_.positions[index[2]]);
-        const glm::dvec3 n = glm::cross(b - a, c - a);
-        const double length = glm::length(n);
-        if (!(length > 0.0))
-            return false;
-        normal = glm::dot(n, along) > 0.0 ? -n / length : n / length;
-        return true;
-    }
-
-    float visibility(const Receiver &receiver, uint64_t pixel) const
-    {
-        const glm::dvec3 p = receiver.position + receiver.normal * receiver.offset;
-        const glm::vec3 start(p);
-        glm::vec3 directions[8];
-        uint32_t free = 0, pending = 0;
-        for (uint32_t j = 0; j < grid_; j++)
-            for (uint32_t i = 0; i < grid_; i++) {
-                const uint64_t random = mix(pixel * (static_cast<uint64_t>(grid_) * grid_) + j * grid_ + i);
-                const double s = (i + static_cast<double>(random & 0xffffffffu) * 0x1p-32) / grid_;
-                const double t = (j + static_cast<double>(random >> 32) * 0x1p-32) / grid_;
-                directions[pending++] = glm::vec3(to_light_sample(light_, p, s, t, far_away_));
-                if (pending == 8) {
-                    free += rays_.count_free(start, directions, pending);
-                    pending = 0;
-                }
-            }
-        if (pending)
-            free += rays_.count_free(start, directions, pending);
-        return static_cast<float>(free) / static_cast<float>(grid_ * grid_);
-    }
-
-    const Mesh &mesh_;
-    RayScene rays_;
-    const FloatImage &depth_;
-    bool reversed_;
-    Light light_;
-    uint32_t grid_;
-    glm::dmat4 to_mesh_;
+  private:
+    Light light_; // in mesh space
     glm::dvec3 light_forward_{0.0};
     double light_near_;
-    double far_away_;
-    double offset_;
 };
 
 // Two FNV-1a hashes of 64 bits with different starts.
@@ -209,36 +127,13 @@ Truth compute_truth(const Mesh &mesh, const glm::dvec3 &origin, const DepthView 
 {
     if (options.samples < 1 || options.samples > 65536)
         fail("ground truth: %u light samples, expected 1 to 65536", options.samples);
-    const FloatImage &depth = camera.depth;
-    Truth truth{FloatImage(depth.width, depth.height, 1.0f), FloatImage(depth.width, depth.height, 0.0f)};
-    const Tracer tracer(mesh, origin, camera, light, options);
-
-    std::atomic<uint32_t> next{0}, done{0};
-    std::mutex mutex;
-    std::exception_ptr failure;
-    const auto work = [&] {
-        try {
-            for (uint32_t y = next++; y < depth.height; y = next++) {
-                tracer.row(y, truth);
-                const uint32_t finished = ++done;
-                if (progress && (finished % 8 == 0 || finished == depth.height)) {
-                    const std::lock_guard<std::mutex> lock(mutex);
-                    progress(static_cast<double>(finished) / depth.height);
-                }
-            }
-        } catch (...) {
-            const std::lock_guard<std::mutex> lock(mutex);
-            failure = std::current_exception();
-        }
-    };
-    std::vector<std::thread> threads;
-    for (unsigned i = 1; i < std::max(1u, std::thread::hardware_concurrency()); i++)
-        threads.emplace_back(work);
-    work();
-    for (std::thread &thread : threads)
-        thread.join();
-    if (failure)
-        std::rethrow_exception(failure);
+    const RayScene rays(mesh);
+    const Receivers receivers = find_receivers(mesh, rays, origin, camera);
+    Truth truth{trace_shadows(rays, receivers, TruthSampler(light, receivers, options), progress),
+                FloatImage(receivers.width, receivers.height, 0.0f)};
+    const Mask mask(light, origin, options.light_near);
+    for (const Receiver &receiver : receivers.points)
+        truth.mask.texels[receiver.pixel] = mask.has(receiver) ? 1.0f : 0.0f;
     return truth;
 }
 
@@ -262,6 +157,8 @@ Truth cached_truth(const std::string &folder, const Mesh &mesh, const glm::dvec3
     hash.value(light.angular_radius);
     hash.value(options.samples);
     hash.value(options.light_near);
+    if (options.seed != 0)
+        hash.value(options.seed);
     const fs::path base = fs::path(folder) / ("truth-" + hash.text());
     const std::string visibility_path = base.string() + ".exr", mask_path = base.string() + "-mask.exr";
 
