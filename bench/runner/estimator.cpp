@@ -61,6 +61,8 @@ std::unique_ptr<Estimator> make_estimator(gpu &g, DeviceCase &device_case, const
         return make_peer_estimator(g, device_case, technique);
     case TechniqueKind::average:
         return make_average_estimator(g, device_case, technique);
+    case TechniqueKind::embree:
+        return make_embree_estimator(device_case, technique);
     }
     fail("technique %s has no estimator", technique.name.c_str());
 }

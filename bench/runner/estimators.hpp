@@ -7,6 +7,7 @@ std::unique_ptr<Estimator> make_library_estimator(gpu &g, DeviceCase &device_cas
                                                   bool stats);
 std::unique_ptr<Estimator> make_peer_estimator(gpu &g, DeviceCase &device_case, const Technique &technique);
 std::unique_ptr<Estimator> make_average_estimator(gpu &g, DeviceCase &device_case, const Technique &technique);
+std::unique_ptr<Estimator> make_embree_estimator(DeviceCase &device_case, const Technique &technique);
 
 // What a peer is told about a depth buffer and about the light.
 peer_depth to_peer(const gpu_image &image, const Frustum &frustum);

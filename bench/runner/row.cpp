@@ -41,7 +41,7 @@ double sum(const std::vector<PassTime> &passes)
 // The stage a pass belongs to, for time_ms.
 const char *stage_of(const std::string &pass)
 {
-    if (pass.rfind("hierarchy", 0) == 0)
+    if (pass.rfind("hierarchy", 0) == 0 || pass == "embree_build")
         return "build";
     if (pass.rfind("classify", 0) == 0)
         return "classify";

@@ -49,6 +49,7 @@ enum Family : unsigned {
     ON_PCSS = 1u << 5,
     ON_MARCH = 1u << 6,
     ON_AVERAGE = 1u << 7,
+    ON_EMBREE = 1u << 8,
     ON_MAPS = ON_LIBRARY | ON_AUTO | ON_COPY | ON_HARD | ON_PCF | ON_PCSS | ON_MARCH, // reads the case's maps
 };
 
@@ -66,6 +67,7 @@ const std::vector<Name> technique_list = {
     {"pcss", ON_PCSS, TechniqueKind::dispatch, SOFTSH_TECHNIQUE_AUTO},
     {"march", ON_MARCH, TechniqueKind::dispatch, SOFTSH_TECHNIQUE_AUTO},
     {"average", ON_AVERAGE, TechniqueKind::average, SOFTSH_TECHNIQUE_AUTO},
+    {"embree", ON_EMBREE, TechniqueKind::embree, SOFTSH_TECHNIQUE_AUTO},
     {"area", ON_LIBRARY, TechniqueKind::library, SOFTSH_TECHNIQUE_AREA},
     {"bitmask", ON_LIBRARY, TechniqueKind::library, SOFTSH_TECHNIQUE_BITMASK},
     {"auto", ON_AUTO, TechniqueKind::library, SOFTSH_TECHNIQUE_AUTO},
@@ -154,6 +156,8 @@ const std::vector<Setting> &setting_list()
          [](Technique &t, const std::string &v) {
              t.fit_near = choose("near", v, {{"plane", 0}, {"fit", 1}});
          }},
+        {"samples", "N: rays of a pixel, rounded down to a square number", ON_EMBREE,
+         [](Technique &t, const std::string &v) { t.rays = number("samples", v, 1, 65536); }},
     };
     return list;
 }

@@ -15,6 +15,7 @@ enum class TechniqueKind {
     library,
     dispatch, // one dispatch of bench/peers on the depth buffers of the case
     average,  // a shadow map of the scene's mesh for each of many points of the light
+    embree,   // shadow rays on the CPU through the scene's mesh
 };
 
 struct Technique {
@@ -27,6 +28,7 @@ struct Technique {
     bool automatic = false;    // the library without settings
     softsh_settings library{}; // unless automatic
     softsh_accel accel = SOFTSH_ACCEL_AUTO;
+    uint32_t rays = 64;             // embree: of a pixel, rounded down to a square number
     std::optional<uint32_t> layers; // use only the first N layer maps
 };
 
