@@ -47,6 +47,8 @@ expect 1 "budget" "$eval" good --technique bitmask --set budget=-4
 expect 2 "repeat" "$eval" good --repeat x
 expect 2 "case" "$eval"
 expect 1 "layers" "$eval" good --set layers=3
+expect 1 "embree scene" "$eval" good --technique embree
+expect 1 "samples 65536" "$eval" good --technique embree --set samples=0
 broken 's/"shape":[^,]*,/"shape": "cube",/'
 expect 1 "case.json shape" "$eval" bad
 broken 's/"depth_convention":[^,]*,/"depth_convention": "sideways",/'
