@@ -77,17 +77,6 @@ std::optional<double> time_figure(const Row &row, double RowTimes::*field)
     return row.times ? std::optional<double>((*row.times).*field) : std::nullopt;
 }
 
-// Milliseconds of a stage; none if no pass of it ran.
-std::optional<double> stage_ms(const Row &row, const std::string &stage)
-{
-    std::optional<double> ms;
-    if (row.times)
-        for (const PassTime &pass : row.times->passes)
-            if (stage == stage_of(pass.name))
-                ms = ms.value_or(0.0) + pass.ms;
-    return ms;
-}
-
 } // namespace
 
 ErrorMetric measure_error(const FloatImage &result, const FloatImage &truth, const FloatImage *mask)
@@ -168,6 +157,16 @@ std::optional<RowTimes> summarise(const std::vector<RunTimes> &runs)
     for (const std::string &name : order)
         times.passes.push_back({name, median(passes[name])});
     return times;
+}
+
+std::optional<double> stage_ms(const Row &row, const std::string &stage)
+{
+    std::optional<double> ms;
+    if (row.times)
+        for (const PassTime &pass : row.times->passes)
+            if (stage == stage_of(pass.name))
+                ms = ms.value_or(0.0) + pass.ms;
+    return ms;
 }
 
 std::string to_json(const Row &row)

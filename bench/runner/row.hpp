@@ -43,6 +43,9 @@ Row make_row(const gpu &g, const Case &data, const Technique &technique);
 // Medians over runs; none if there are no runs.
 std::optional<RowTimes> summarise(const std::vector<RunTimes> &runs);
 
+// Milliseconds of a stage ("build", "classify", "evaluate", "filter"); none if no pass of it ran.
+std::optional<double> stage_ms(const Row &row, const std::string &stage);
+
 // JSON with the fields of the tools' contract; figures that were not measured are null.
 std::string to_json(const Row &row);
 // The fields of the JSON row, flattened; settings as "key=value key=value".

@@ -39,7 +39,7 @@ void run_light_size(Bench &bench)
         if (source.kind == CaseSource::Kind::folder)
             continue; // its light is what it is
         // Points of (light width, figure), of lights wide enough that their kernels span several texels.
-        std::map<std::string, std::vector<std::pair<double, double>>> time, primitives;
+        std::map<std::string, std::vector<std::pair<double, double>>> time, pixel_time, primitives;
         std::string name;
         for (const double width : sizes) {
             SceneOptions scene;
@@ -53,13 +53,18 @@ void run_light_size(Bench &bench)
                     continue;
                 const std::string key = describe(row.technique);
                 time[key].emplace_back(width, row.times->visibility);
-                if (row.stats && row.stats->active)
-                    primitives[key].emplace_back(width, static_cast<double>(row.stats->primitives) /
-                                                            static_cast<double>(row.stats->active));
+                if (!row.stats || !row.stats->active)
+                    continue;
+                const double active = static_cast<double>(row.stats->active);
+                pixel_time[key].emplace_back(width, stage_ms(row, "evaluate").value_or(0.0) / active);
+                primitives[key].emplace_back(width, static_cast<double>(row.stats->primitives) / active);
             }
         }
         for (const auto &[key, points] : time)
             bench.report().figures.push_back({"growth_of_time_with_light_width", name, growth_exponent(points), key});
+        for (const auto &[key, points] : pixel_time)
+            bench.report().figures.push_back(
+                {"growth_of_time_per_active_pixel_with_light_width", name, growth_exponent(points), key});
         for (const auto &[key, points] : primitives)
             bench.report().figures.push_back(
                 {"growth_of_primitives_per_active_pixel_with_light_width", name, growth_exponent(points), key});

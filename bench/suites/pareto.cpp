@@ -17,14 +17,15 @@ const std::vector<std::string> contestants = {
     "hard",
     "pcf",
     "pcss",
-    "pcss blockers=8 taps=16",
-    "pcss blockers=32 taps=64",
     "pcss blockers=64 taps=256",
+    "pcss blockers=8 taps=16 near=fit",
     "pcss near=fit",
-    "march samples=4",
+    "pcss blockers=32 taps=64 near=fit",
+    "march samples=4 near=fit",
     "march samples=16",
-    "march samples=64",
-    "march samples=16 steps=64 near=fit",
+    "march samples=16 near=fit",
+    "march samples=32 steps=8 near=fit",
+    "march samples=64 near=fit",
     "average samples=16",
     "average samples=64",
     "average samples=256",
@@ -101,18 +102,17 @@ std::string case_label(const Row &row)
     return row.case_name + " " + std::to_string(row.width) + "x" + std::to_string(row.height);
 }
 
-// PCSS's point, and ours against it: error within its time, time to its error.
-void add_mark(Report &report, const std::vector<Row *> &rows)
+// A point of PCSS, and ours against it: error within its time, time to its error. `name` is how the figures start.
+void add_mark(Report &report, const std::vector<Row *> &rows, const std::string &technique, const std::string &name)
 {
-    const auto pcss = std::find_if(rows.begin(), rows.end(), [](const Row *row) {
-        return row->technique.name == "pcss" && row->technique.settings.empty();
-    });
+    const auto pcss =
+        std::find_if(rows.begin(), rows.end(), [&](const Row *row) { return describe(row->technique) == technique; });
     if (pcss == rows.end())
         return;
     const std::string label = case_label(**pcss);
     const double time = (*pcss)->times->total, error = (*pcss)->error->mae;
-    report.figures.push_back({"pcss_error", label, error, "16 + 32 taps"});
-    report.figures.push_back({"pcss_ms", label, time, "16 + 32 taps"});
+    report.figures.push_back({name + "_error", label, error, technique});
+    report.figures.push_back({name + "_ms", label, time, technique});
     const auto best = [&](auto allowed, auto value) {
         const Row *found = nullptr;
         for (const Row *row : rows)
@@ -122,23 +122,23 @@ void add_mark(Report &report, const std::vector<Row *> &rows)
     };
     const auto error_of = [](const Row &row) { return row.error->mae; };
     const auto time_of = [](const Row &row) { return row.times->total; };
-    const auto add = [&](const std::string &name, const Row *row, double value, const char *none) {
+    const auto add = [&](const std::string &figure, const Row *row, double value, const char *none) {
         report.figures.push_back(
-            {name, label, row ? std::optional<double>(value) : std::nullopt, row ? describe(row->technique) : none});
+            {figure, label, row ? std::optional<double>(value) : std::nullopt, row ? describe(row->technique) : none});
     };
     for (const int factor : {1, 3}) {
         const Row *row = best([&](const Row &r) { return r.times->total <= factor * time; }, error_of);
-        const std::string within = factor == 1 ? "pcss_time" : "3_pcss_times";
+        const std::string within = factor == 1 ? name + "_time" : "3_" + name + "_times";
         const char *none = "no setting of the library is that fast here";
         add("best_error_within_" + within, row, row ? row->error->mae : 0, none);
-        add("best_error_within_" + within + "_over_pcss_error", row, row ? row->error->mae / error : 0, none);
+        add("best_error_within_" + within + "_over_" + name + "_error", row, row ? row->error->mae / error : 0, none);
     }
     for (const int divisor : {1, 3, 4}) {
         const Row *row = best([&](const Row &r) { return r.error->mae * divisor <= error; }, time_of);
-        const std::string goal = divisor == 1 ? "pcss_error" : "pcss_error_over_" + std::to_string(divisor);
+        const std::string goal = divisor == 1 ? name + "_error" : name + "_error_over_" + std::to_string(divisor);
         const char *none = "no setting of the library is that accurate here";
         add("least_ms_for_" + goal, row, row ? row->times->total : 0, none);
-        add("least_time_for_" + goal + "_over_pcss_time", row, row ? row->times->total / time : 0, none);
+        add("least_time_for_" + goal + "_over_" + name + "_time", row, row ? row->times->total / time : 0, none);
     }
 }
 
@@ -226,7 +226,8 @@ void run_pareto(Bench &bench)
         bench.measure(*bench_case, techniques, effort);
         std::vector<Row *> rows = comparable_rows(bench.report(), begin);
         mark_front(rows);
-        add_mark(bench.report(), rows);
+        add_mark(bench.report(), rows, "pcss", "pcss");
+        add_mark(bench.report(), rows, "pcss near=fit", "fitted_pcss");
         add_embree(bench.report(), rows);
         bench.report().write();
     }
