@@ -2,13 +2,11 @@
  * docs/numerics.md, after sections 3 and 4 of Schwarz and Stamminger, Bitmask Soft Shadows, 2007. Departures from the
  * paper are the page's: exact microquad coverage, and a bias from the receiver's plane. */
 #include "reference_visibility.h"
+#include "reference_polygon.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Half width of the band around the receiver's plane that is its own surface, in slopes per spacing. */
-static const double micropatch_band = 0.5, microquad_band = 0.05;
 
 /* One sample of the chosen level. */
 typedef struct micro_sample {
@@ -70,89 +68,9 @@ uint32_t reference_level(uint32_t extent, uint32_t budget)
     return level;
 }
 
-static softsh_primitive primitive_of(const reference_settings *settings)
-{
-    return settings->primitive == SOFTSH_PRIMITIVE_DEFAULT ? SOFTSH_PRIMITIVE_MICROQUAD : settings->primitive;
-}
-
 static bool is_micropatch(const reference_settings *settings)
 {
-    const softsh_primitive primitive = primitive_of(settings);
-    return primitive == SOFTSH_PRIMITIVE_MICROPATCH || primitive == SOFTSH_PRIMITIVE_MICROPATCH_UNEXTENDED;
-}
-
-static bool is_nearest(const reference_settings *settings)
-{
-    return settings->aggregation == SOFTSH_AGGREGATION_NEAREST;
-}
-
-static double slope(const reference_receiver *receiver)
-{
-    return fabs(receiver->gradient[0]) + fabs(receiver->gradient[1]);
-}
-
-static double plane_at(const reference_receiver *receiver, const double uv[2])
-{
-    return receiver->uvg[2] + receiver->gradient[0] * (uv[0] - receiver->uvg[0]) +
-           receiver->gradient[1] * (uv[1] - receiver->uvg[1]);
-}
-
-/* How far a block's nearest texel lifts the receiver's plane. */
-static double lift(const reference_settings *settings, const reference_receiver *receiver)
-{
-    const double spacing = (double)(1u << settings->level);
-    return !is_micropatch(settings) && is_nearest(settings) ? slope(receiver) * 0.5 * (spacing - 1.0) : 0.0;
-}
-
-double reference_raised_g(const reference_map *map, const reference_settings *settings,
-                          const reference_receiver *receiver)
-{
-    const double g = receiver->uvg[2];
-    if (receiver->override_bias) {
-        if (!map->perspective)
-            return g + receiver->bias;
-        return receiver->bias * g < 1.0 ? g / (1.0 - receiver->bias * g) : INFINITY;
-    }
-    return g + receiver->eta + lift(settings, receiver);
-}
-
-static bool in_front_of_light(const reference_map *map, double g)
-{
-    return map->epsilon - map->delta * g > 0.0;
-}
-
-/* Section 5: place and depth of sample (x, y) of the level. */
-static void level_sample(const evaluation *e, const float *g, uint32_t x, uint32_t y, double place[3])
-{
-    const uint32_t width = e->map->width, height = e->map->height, spacing = e->spacing;
-    if (is_nearest(e->settings)) {
-        place[0] = (x + 0.5) * spacing;
-        place[1] = (y + 0.5) * spacing;
-        place[2] = -INFINITY;
-        for (uint32_t j = y * spacing; j < (y + 1) * spacing && j < height; ++j)
-            for (uint32_t i = x * spacing; i < (x + 1) * spacing && i < width; ++i)
-                place[2] = fmax(place[2], (double)g[(size_t)j * width + i]);
-    } else {
-        const uint32_t far_i = x * spacing + spacing / 2, far_j = y * spacing + spacing / 2;
-        const uint32_t i = far_i < width - 1 ? far_i : width - 1, j = far_j < height - 1 ? far_j : height - 1;
-        place[0] = i + 0.5;
-        place[1] = j + 0.5;
-        place[2] = (double)g[(size_t)j * width + i];
-    }
-}
-
-/* Section 3, bias. */
-static bool passes(const evaluation *e, const double place[3])
-{
-    if (!(place[2] > e->raised[2]) || !in_front_of_light(e->map, place[2]))
-        return false;
-    if (e->receiver->override_bias)
-        return true;
-    const double height = place[2] - plane_at(e->receiver, place) - lift(e->settings, e->receiver);
-    const double band = is_micropatch(e->settings) ? micropatch_band : microquad_band;
-    const double distance = fabs(place[0] - e->receiver->uvg[0]) + fabs(place[1] - e->receiver->uvg[1]);
-    const double margin = e->receiver->eta + band * slope(e->receiver) * e->spacing + e->receiver->drift * distance;
-    return e->receiver->trusted ? height > margin : fabs(height) > margin;
+    return reference_flat(reference_primitive(settings));
 }
 
 static void prepare_samples(evaluation *e, const float *g)
@@ -160,17 +78,17 @@ static void prepare_samples(evaluation *e, const float *g)
     for (uint32_t y = 0; y < e->rows; ++y) {
         for (uint32_t x = 0; x < e->columns; ++x) {
             micro_sample *sample = &e->samples[(size_t)y * e->columns + x];
-            level_sample(e, g, x, y, sample->place);
-            sample->passes = passes(e, sample->place);
+            reference_level_sample(e->map, e->settings, g, x, y, sample->place);
+            sample->passes = reference_occludes(e->map, e->settings, e->receiver, sample->place);
             if (sample->passes)
                 reference_map_backproject(e->map, e->raised, sample->place, sample->q);
         }
     }
 }
 
-static double to_sample(const evaluation *e, double q)
+double reference_to_sample(softsh_pattern pattern, double q)
 {
-    return (q + 1.0) * 0.5 * e->pattern_size;
+    return (q + 1.0) * 0.5 * reference_pattern_size(pattern);
 }
 
 static void set_bit(reference_occlusion *out, uint32_t bit)
@@ -182,8 +100,10 @@ static void set_bit(reference_occlusion *out, uint32_t bit)
 static void cover_rectangle(const evaluation *e, const double rectangle[4])
 {
     const uint32_t n = e->pattern_size;
-    const double x0 = to_sample(e, rectangle[0]), y0 = to_sample(e, rectangle[1]);
-    const double x1 = to_sample(e, rectangle[2]), y1 = to_sample(e, rectangle[3]);
+    const double x0 = reference_to_sample(e->settings->pattern, rectangle[0]),
+                 y0 = reference_to_sample(e->settings->pattern, rectangle[1]);
+    const double x1 = reference_to_sample(e->settings->pattern, rectangle[2]),
+                 y1 = reference_to_sample(e->settings->pattern, rectangle[3]);
     if (!(x1 > 0.0 && y1 > 0.0 && x0 < n && y0 < n))
         return;
     for (uint32_t j = 0; j < n; ++j) {
@@ -196,14 +116,13 @@ static void cover_rectangle(const evaluation *e, const double rectangle[4])
     }
 }
 
-/* Samples inside a polygon by the crossing rule. */
-static void cover_quad(const evaluation *e, double q[4][2])
+void reference_cover_quad(softsh_pattern pattern, double q[4][2], reference_occlusion *out)
 {
-    const uint32_t n = e->pattern_size;
+    const uint32_t n = reference_pattern_size(pattern);
     double corner[4][2], lo[2] = {INFINITY, INFINITY}, hi[2] = {-INFINITY, -INFINITY};
     for (int k = 0; k < 4; ++k) {
         for (int axis = 0; axis < 2; ++axis) {
-            corner[k][axis] = to_sample(e, q[k][axis]);
+            corner[k][axis] = reference_to_sample(pattern, q[k][axis]);
             lo[axis] = fmin(lo[axis], corner[k][axis]);
             hi[axis] = fmax(hi[axis], corner[k][axis]);
         }
@@ -214,28 +133,21 @@ static void cover_quad(const evaluation *e, double q[4][2])
         for (uint32_t i = 0; i < n; ++i) {
             double xy[2];
             bool covered = false;
-            reference_pattern_sample(e->settings->pattern, i, j, xy);
+            reference_pattern_sample(pattern, i, j, xy);
             for (int k = 0; k < 4; ++k) {
-                const double *a = corner[k], *b = corner[(k + 1) % 4];
-                if (a[1] > b[1]) {
-                    a = corner[(k + 1) % 4];
-                    b = corner[k];
-                }
-                if (!(a[1] <= xy[1] && xy[1] < b[1]))
-                    continue;
-                const double crossing = a[0] + (xy[1] - a[1]) * (b[0] - a[0]) / (b[1] - a[1]);
-                covered ^= crossing > xy[0];
+                double crossing;
+                if (reference_crosses(corner[k], corner[(k + 1) % 4], xy[1], &crossing))
+                    covered ^= crossing > xy[0];
             }
             if (covered)
-                set_bit(e->out, j * n + i);
+                set_bit(out, j * n + i);
         }
     }
 }
 
-/* Half the side of the square that stands for the light in area computations. */
-static double area_side(const evaluation *e)
+double reference_area_side(const reference_map *map)
 {
-    return e->map->directional ? 0.5 * sqrt(acos(-1.0)) : 1.0;
+    return map->directional ? 0.5 * sqrt(acos(-1.0)) : 1.0;
 }
 
 static double clamp(double x, double limit)
@@ -245,7 +157,7 @@ static double clamp(double x, double limit)
 
 static void add_rectangle_area(const evaluation *e, const double rectangle[4])
 {
-    const double side = area_side(e);
+    const double side = reference_area_side(e->map);
     const double width = clamp(rectangle[2], side) - clamp(rectangle[0], side);
     const double height = clamp(rectangle[3], side) - clamp(rectangle[1], side);
     e->out->area += width * height / (4.0 * side * side);
@@ -253,7 +165,7 @@ static void add_rectangle_area(const evaluation *e, const double rectangle[4])
 
 static void add_quad_area(const evaluation *e, double q[4][2])
 {
-    const double side = area_side(e);
+    const double side = reference_area_side(e->map);
     double twice = 0.0;
     for (int k = 0; k < 4; ++k) {
         const double *a = q[k], *b = q[(k + 1) % 4];
@@ -278,7 +190,7 @@ static void add_micropatch(const evaluation *e, uint32_t x, uint32_t y)
         return;
     backproject_border(e, sample, -half, -half, &rectangle[0]);
     backproject_border(e, sample, half, half, &rectangle[2]);
-    if (primitive_of(e->settings) == SOFTSH_PRIMITIVE_MICROPATCH) {
+    if (reference_primitive(e->settings) == SOFTSH_PRIMITIVE_MICROPATCH) {
         double q[2];
         if (x > 0 && sample[-1].passes) {
             backproject_border(e, sample - 1, half, 0.0, q);
@@ -303,8 +215,8 @@ static void add_microquad(const evaluation *e, uint32_t x, uint32_t y)
             return;
         memcpy(q[k], corners[k]->q, sizeof(q[k]));
     }
-    if (primitive_of(e->settings) == SOFTSH_PRIMITIVE_MICROQUAD) {
-        cover_quad(e, q);
+    if (reference_primitive(e->settings) == SOFTSH_PRIMITIVE_MICROQUAD) {
+        reference_cover_quad(e->settings->pattern, q, e->out);
     } else {
         const double left = 0.5 * (q[0][0] + q[3][0]), right = 0.5 * (q[1][0] + q[2][0]);
         const double bottom = 0.5 * (q[0][1] + q[1][1]), top = 0.5 * (q[3][1] + q[2][1]);
@@ -327,22 +239,6 @@ static void evaluate_layer(evaluation *e, const float *g)
                 add_microquad(e, x, y);
 }
 
-/* A light without size: the one texel the receiver lies in decides. */
-static bool hard_shadow(const reference_map *map, const float *g, const reference_receiver *receiver, double raised)
-{
-    double cell[2];
-    const uint32_t size[2] = {map->width, map->height};
-    for (int i = 0; i < 2; ++i)
-        cell[i] = fmin(fmax(floor(receiver->uvg[i]), 0.0), size[i] - 1.0);
-    const double center[2] = {cell[0] + 0.5, cell[1] + 0.5};
-    const double occluder = (double)g[(size_t)cell[1] * map->width + (size_t)cell[0]];
-    if (!in_front_of_light(map, occluder))
-        return false;
-    if (receiver->override_bias)
-        return occluder > raised;
-    return occluder > plane_at(receiver, center) + receiver->eta + 0.5 * slope(receiver);
-}
-
 static void set_all(reference_occlusion *out, uint32_t pattern_size)
 {
     for (uint32_t bit = 0; bit < pattern_size * pattern_size; ++bit)
@@ -350,15 +246,14 @@ static void set_all(reference_occlusion *out, uint32_t pattern_size)
     out->area = 1.0;
 }
 
-/* Drops the samples beside the light and counts. */
-static void count(const reference_map *map, const reference_settings *settings, reference_occlusion *out)
+void reference_count(const reference_map *map, softsh_pattern pattern, reference_occlusion *out)
 {
-    const uint32_t n = reference_pattern_size(settings->pattern);
+    const uint32_t n = reference_pattern_size(pattern);
     out->counted = out->occluded = 0;
     for (uint32_t j = 0; j < n; ++j) {
         for (uint32_t i = 0; i < n; ++i) {
             const uint32_t word = (j * n + i) / 32, bit = 1u << (j * n + i) % 32;
-            if (!reference_pattern_counted(settings->pattern, map->directional, i, j)) {
+            if (!reference_pattern_counted(pattern, map->directional, i, j)) {
                 out->mask[word] &= ~bit;
                 continue;
             }
@@ -390,13 +285,13 @@ bool reference_visibility(const reference_map *map, const float *const *layers, 
 {
     memset(out, 0, sizeof(*out));
     const uint32_t n = reference_pattern_size(settings->pattern);
-    if (primitive_of(settings) > SOFTSH_PRIMITIVE_MICROQUAD_RECTANGLE || settings->level > 14 ||
+    if (reference_primitive(settings) > SOFTSH_PRIMITIVE_MICROQUAD_RECTANGLE || settings->level > 14 ||
         (is_micropatch(settings) && !map->point && !map->axis_aligned))
         return false;
     if (receiver->state == REFERENCE_RECEIVER_AWAY)
         set_all(out, n);
     if (receiver->state != REFERENCE_RECEIVER_ACTIVE) {
-        count(map, settings, out);
+        reference_count(map, settings->pattern, out);
         return true;
     }
 
@@ -415,12 +310,12 @@ bool reference_visibility(const reference_map *map, const float *const *layers, 
         e.out = &layer;
         if (!map->point)
             evaluate_layer(&e, layers[i]);
-        else if (hard_shadow(map, layers[i], receiver, e.raised[2]))
+        else if (reference_hard_shadow(map, settings, layers[i], receiver))
             set_all(&layer, n);
-        count(map, settings, &layer);
+        reference_count(map, settings->pattern, &layer);
         merge_layer(settings, &layer, out);
     }
     free(e.samples);
-    count(map, settings, out);
+    reference_count(map, settings->pattern, out);
     return true;
 }

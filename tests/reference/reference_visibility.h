@@ -3,20 +3,9 @@
 #ifndef REFERENCE_VISIBILITY_H
 #define REFERENCE_VISIBILITY_H
 
-#include <softshadow/techniques.h>
-
-#include "reference_map.h"
-#include "reference_receiver.h"
+#include "reference_occluder.h"
 
 #define REFERENCE_MAX_PATTERN 32
-
-typedef struct reference_settings {
-    softsh_pattern pattern;
-    softsh_primitive primitive;
-    softsh_aggregation aggregation;
-    softsh_merge merge;
-    uint32_t level;
-} reference_settings;
 
 typedef struct reference_occlusion {
     uint32_t counted;  /* samples of the pattern on the light */
@@ -36,10 +25,14 @@ bool reference_pattern_counted(softsh_pattern pattern, bool directional, uint32_
 
 /* Smallest level that keeps a kernel of `extent` texels within budget x budget micro-occluders; budget 0: level 0. */
 uint32_t reference_level(uint32_t extent, uint32_t budget);
-/* The receiver's g that samples are compared with and projected from. Infinite if an override moves the receiver to or
- * beyond the projection centre. */
-double reference_raised_g(const reference_map *map, const reference_settings *settings,
-                          const reference_receiver *receiver);
+/* q to sample coordinates. */
+double reference_to_sample(softsh_pattern pattern, double q);
+/* Half the side of the square that stands for the light in areas. */
+double reference_area_side(const reference_map *map);
+/* ORs the samples inside a quad of light points, by the crossing rule, into out->mask. */
+void reference_cover_quad(softsh_pattern pattern, double q[4][2], reference_occlusion *out);
+/* Drops the samples of out->mask beside the light and counts. */
+void reference_count(const reference_map *map, softsh_pattern pattern, reference_occlusion *out);
 
 /* `layers` are layer_count fan depth images of the map's size, row by row. False where the definitions have no answer:
  * a micropatch under a light that is not axis-aligned, or an unsupported primitive. */
