@@ -22,11 +22,11 @@ static int compare_edges(const void *a, const void *b)
 /* Equal as sets. Sorts both. */
 static bool same_contours(reference_contour *a, reference_contour *b)
 {
-    if (a->count != b->count)
-        return false;
+    if (a->count != b->count || a->count == 0)
+        return a->count == b->count;
     qsort(a->edges, a->count, sizeof(*a->edges), compare_edges);
     qsort(b->edges, b->count, sizeof(*b->edges), compare_edges);
-    return a->count == 0 || memcmp(a->edges, b->edges, a->count * sizeof(*a->edges)) == 0;
+    return memcmp(a->edges, b->edges, a->count * sizeof(*a->edges)) == 0;
 }
 
 static void nodes_bound_their_samples(void **unused)
