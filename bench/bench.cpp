@@ -8,7 +8,9 @@
 
 #include "command_line.hpp"
 #include "error.hpp"
+#include "gnuplot.hpp"
 #include "interrupt.hpp"
+#include "plots.hpp"
 #include "suite.hpp"
 
 namespace fs = std::filesystem;
@@ -181,6 +183,8 @@ void check_inputs_and_outputs(const Options &o)
         else
             load_case(source.name);
     }
+    if (!o.plots.empty())
+        check_gnuplot();
     for (const std::string &folder : {o.plots, o.bench.images})
         if (!folder.empty())
             check_writable_folder(folder, "probe");
@@ -242,6 +246,8 @@ int main(int argc, char **argv)
         }
         print_figures(report);
         report.write();
+        if (!options.plots.empty())
+            write_plots(report, options.plots);
     } catch (const std::exception &error) {
         std::fprintf(stderr, "softshadow-bench: %s\n", error.what());
         status = 1;
