@@ -36,9 +36,11 @@ void warn_of_lost_time(const Row &row)
                      describe(row.technique).c_str(), row.times->total, row.times->wall);
 }
 
-std::string file_name(const Row &row)
+// Suites measure the same techniques on the same cases with other maps and lights.
+std::string file_name(const Row &row, const std::string &what)
 {
-    std::string name = row.case_name + "-" + std::to_string(row.width) + "-" + describe(row.technique);
+    std::string name = row.suite + "-" + row.case_name + "-" + std::to_string(row.width) +
+                       (row.variant.empty() ? "" : "-" + row.variant) + "-" + what;
     for (char &c : name)
         if (c == ' ' || c == '/' || c == '=')
             c = c == '=' ? '_' : '-';
@@ -109,7 +111,9 @@ std::unique_ptr<BenchCase> Bench::load(Scene scene, const SceneCaseOptions &size
     check_interrupted();
     auto result = std::make_unique<BenchCase>();
     result->scene = std::move(scene);
-    result->data = render_case(gpu_, *result->scene, options_.size.value_or(size));
+    SceneCaseOptions chosen = options_.size.value_or(size);
+    chosen.layers = size.layers; // what a suite needs, which --size and --map do not say
+    result->data = render_case(gpu_, *result->scene, chosen);
     if (rays) {
         Progress tracing; // its own line: the first time it can take longer than the suite
         tracing.show("ground truth of " + result->data.name);
@@ -209,11 +213,10 @@ void Bench::show(double part)
 void Bench::write_pictures(const BenchCase &bench_case, const Row &row, const FloatImage &result) const
 {
     const Case &data = bench_case.data;
-    const fs::path base = fs::path(options_.images) / file_name(row);
+    const fs::path base = fs::path(options_.images) / file_name(row, describe(row.technique));
     write_png(base.string() + ".png", grey_image(result));
     if (!data.truth)
         return;
     write_png(base.string() + "-error.png", heat_map(result, *data.truth, data.mask ? &*data.mask : nullptr));
-    write_png((fs::path(options_.images) / (data.name + "-" + std::to_string(row.width) + "-truth.png")).string(),
-              grey_image(*data.truth));
+    write_png((fs::path(options_.images) / (file_name(row, "truth") + ".png")).string(), grey_image(*data.truth));
 }

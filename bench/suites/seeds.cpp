@@ -205,7 +205,11 @@ void quality(Bench &bench, const SceneCaseOptions &size, uint32_t rays)
                           darkest = "bitmask layers=2 primitive=microquad merge=max";
         Effort counts;
         counts.rounds = 0;
-        const Rows rows = measure(bench, *bench_case, {area, patch, quad, coarse, fine, filtered, united, darkest},
+        // The last four no claim is about: for the table of the report.
+        const Rows rows = measure(bench, *bench_case,
+                                  {area, patch, quad, coarse, fine, filtered, united, darkest, quad + " pattern=8x8",
+                                   "bitmask layers=1 primitive=microquad-rectangle",
+                                   "area layers=1 primitive=microquad", "area layers=2 primitive=microquad merge=max"},
                                   counts, std::string("S4: ") + scene);
         claim.measured +=
             text("%s: area %.4f, micropatch %.4f, microquad 16j %.4f, 16x16 %.4f, 32x32 %.4f, filtered %.4f, "
