@@ -9,7 +9,7 @@ glslang-tools spirv-tools
 libvulkan-dev libvulkan-volk-dev mesa-vulkan-drivers vulkan-validationlayers vulkan-tools
 libglm-dev libopenimageio-dev openimageio-tools libassimp-dev libembree-dev
 libcmocka-dev libcjson-dev
-gnuplot-nox abigail-tools
+gnuplot-nox python3 abigail-tools
 "
 
 missing=

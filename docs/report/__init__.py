@@ -1,0 +1,1 @@
+"""The report that docs/benchmarks.py writes."""
