@@ -38,6 +38,8 @@ LibraryContext::~LibraryContext()
 
 void LibraryContext::check(softsh_result result) const
 {
+    if (result == SOFTSH_ERROR_LIMIT)
+        throw LimitError(last_message);
     if (result != SOFTSH_SUCCESS)
         fail("%s (%s)", last_message.c_str(), softsh_result_string(result));
 }

@@ -5,8 +5,14 @@
 
 #include <softshadow/softshadow.h>
 
+#include "error.hpp"
 #include "gpu.h"
 #include "light.hpp"
+
+// What is asked for exceeds a limit of the device.
+struct LimitError : Error {
+    using Error::Error;
+};
 
 // A context for everything the process does with the library on this device; errors go to `last_message`.
 class LibraryContext
@@ -16,7 +22,7 @@ class LibraryContext
     ~LibraryContext();
     LibraryContext(const LibraryContext &) = delete;
     LibraryContext &operator=(const LibraryContext &) = delete;
-    // Throws Error with the last message unless `result` is success.
+    // Throws Error, or LimitError, with the last message unless `result` is success.
     void check(softsh_result result) const;
 
     softsh_context *context = nullptr;

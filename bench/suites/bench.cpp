@@ -9,6 +9,7 @@
 
 #include "error.hpp"
 #include "interrupt.hpp"
+#include "library_context.hpp"
 
 namespace fs = std::filesystem;
 
@@ -141,7 +142,14 @@ std::vector<Row> Bench::measure(BenchCase &bench_case, const std::vector<Techniq
         c.row.suite = suite_;
         c.row.variant = variant;
         // The first run counts, generates code, and makes the picture.
-        auto first = make_estimator(gpu_, *bench_case.device, technique, true);
+        std::unique_ptr<Estimator> first;
+        try {
+            first = make_estimator(gpu_, *bench_case.device, technique, true);
+        } catch (const LimitError &error) {
+            progress_.clear();
+            std::fprintf(stderr, "softshadow-bench: left out %s: %s\n", describe(technique).c_str(), error.what());
+            continue;
+        }
         RunTimes times = timed_run(*first);
         const FloatImage result = first->visibility();
         softsh_stats stats{};

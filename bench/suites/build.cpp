@@ -33,9 +33,12 @@ void run_build(Bench &bench)
             }
             if (!(build["hsm"] > 0.0))
                 continue;
-            for (const char *accel : {"ysm", "mssm"})
+            for (const char *accel : {"ysm", "mssm"}) {
+                if (!(build[accel] > 0.0))
+                    continue; // more than the device can hold
                 bench.report().figures.push_back({std::string("build_") + accel + "_over_hsm", label,
                                                   build[accel] / build["hsm"], "median build times in one run"});
+            }
         }
     }
 }
