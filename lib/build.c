@@ -72,8 +72,7 @@ static softsh_result plan_build(const softsh_occluders *o, const softsh_build_in
     return result;
 }
 
-static void fill_header(const softsh_occluders *o, const softsh_build_info *info, const build_plan *plan,
-                        ss_occluders *out)
+static void fill_header(const softsh_build_info *info, const build_plan *plan, ss_occluders *out)
 {
     const softshi_light_space *light = &plan->light;
     const softshi_map_space *map = &plan->maps[0];
@@ -94,10 +93,14 @@ static void fill_header(const softsh_occluders *o, const softsh_build_info *info
     /* The square of the disc's area stands in for it where areas are accumulated. */
     out->extent.x = light->disc ? 0.886226925f : 1.0f;
     out->size = (ss_uvec4){plan->extent.width, plan->extent.height, info->map_count, 0};
-    out->levels = (ss_uvec4){plan->layout.top, plan->layout.join, o->layout.wide_levels, plan->layout.wide_levels};
-    out->strides = (ss_uvec4){plan->extent.width * plan->extent.height, plan->layout.pyramid_texels, 0, 0};
-    for (uint32_t i = 1; i <= plan->layout.top; i++)
-        out->pyramid[i] = (ss_uvec4){plan->layout.offsets[i], softshi_level_size(plan->extent.width, i), 0, 0};
+    const softshi_occluder_layout *layout = &plan->layout;
+    out->levels = (ss_uvec4){layout->top, layout->join, layout->wide_levels,
+                             softshi_level_size(plan->extent.width, layout->join)};
+    /* Creation made sure that all of it can be counted in 32 bits. */
+    out->strides = (ss_uvec4){plan->extent.width * plan->extent.height, (uint32_t)layout->layer_texels,
+                              layout->wide_offset, layout->wide_texels};
+    for (uint32_t i = 1; i <= layout->top; i++)
+        out->pyramid[i] = (ss_uvec4){layout->offsets[i], softshi_level_size(plan->extent.width, i), 0, 0};
 }
 
 static void write_map_descriptor(const softsh_context *context, VkDescriptorSet set, const softsh_map *map)
@@ -127,13 +130,11 @@ softsh_result softsh_cmd_build_occluders(VkCommandBuffer cmd, softsh_occluders *
         return result;
 
     ss_occluders header;
-    fill_header(o, info, &plan, &header);
+    fill_header(info, &plan, &header);
     softshi_recorder recorder;
     softshi_record_begin(&recorder, o->context, cmd, info->timestamps, o->name);
     recorder.sets[SS_SET_OCCLUDERS] = o->set;
     softshi_record_update(&recorder, SOFTSHI_HEADER, o->block.buffer, o->layout.header.offset, &header, sizeof header);
-    softshi_record_discard_image(&recorder, o->block.image,
-                                 o->layout.wide_levels ? o->layout.wide_levels * o->max_layers : 1);
     for (uint32_t i = 0; i < info->map_count; i++) {
         const softsh_map *map = &info->maps[i];
         recorder.sets[SS_SET_IO] = o->io_sets[o->next_io_set];

@@ -37,8 +37,8 @@ void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_
         out->top++;
     while (softshi_level_size(side, out->top) > 1);
     for (uint32_t i = 1; i <= out->top; i++) {
-        out->offsets[i] = out->pyramid_texels;
-        out->pyramid_texels += softshi_level_size(extent.width, i) * softshi_level_size(extent.height, i);
+        out->offsets[i] = out->wide_offset;
+        out->wide_offset += softshi_level_size(extent.width, i) * softshi_level_size(extent.height, i);
     }
     out->join = out->top;
     if (join_texels > 0) {
@@ -46,14 +46,16 @@ void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_
         while (softshi_level_size(side, out->join) > join_texels)
             out->join++;
         /* Not the size at `join`: a smaller map built into the same memory may join at a finer level. */
-        out->wide_extent = (VkExtent2D){minimum(extent.width, join_texels), minimum(extent.height, join_texels)};
-        while (maximum(out->wide_extent.width, out->wide_extent.height) >> (out->wide_levels + 1))
+        const uint32_t width = minimum(extent.width, join_texels), height = minimum(extent.height, join_texels);
+        out->wide_texels = width * height;
+        while (maximum(width, height) >> (out->wide_levels + 1))
             out->wide_levels++;
     }
+    out->layer_texels = out->wide_offset + (VkDeviceSize)out->wide_levels * out->wide_texels;
     VkDeviceSize end = 0;
     out->header = append(&end, sizeof(ss_occluders) + sizeof(ss_plan));
     out->fan_depth = append(&end, (VkDeviceSize)extent.width * extent.height * layers * sizeof(float));
-    out->pyramid = append(&end, (VkDeviceSize)maximum(out->pyramid_texels, 1) * layers * 2 * sizeof(float));
+    out->ranges = append(&end, out->layer_texels * layers * 2 * sizeof(float));
     out->buffer_size = end;
 }
 

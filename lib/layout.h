@@ -14,14 +14,15 @@ uint32_t softshi_level_size(uint32_t texels, uint32_t level);
 
 /* One light's structures for maps of `extent`. */
 typedef struct softshi_occluder_layout {
-    softshi_range header, fan_depth, pyramid; /* in the buffer */
+    softshi_range header, fan_depth, ranges; /* in the buffer */
     VkDeviceSize buffer_size;
-    uint32_t top;            /* levels above level 0 */
-    uint32_t pyramid_texels; /* per layer */
-    uint32_t offsets[SS_MAX_LEVELS];
-    uint32_t join;        /* pyramid level the wide part starts from; `top` without one */
-    uint32_t wide_levels; /* 0 without a wide part */
-    VkExtent2D wide_extent;
+    VkDeviceSize layer_texels;       /* of `ranges`: a layer's pyramid, then its wide levels */
+    uint32_t top;                    /* levels above level 0 */
+    uint32_t offsets[SS_MAX_LEVELS]; /* first texel of a pyramid level */
+    uint32_t join;                   /* pyramid level the wide part starts from; `top` without one */
+    uint32_t wide_levels;            /* 0 without a wide part */
+    uint32_t wide_offset;            /* first texel of wide level 1 */
+    uint32_t wide_texels;            /* room for a wide level */
 } softshi_occluder_layout;
 
 /* `join_texels`: the most texels a side of the wide part; 0: no wide part (HSM), UINT32_MAX: an MSSM. */

@@ -7,83 +7,22 @@
 #include "techniques/hierarchy.h"
 #include "validate.h"
 
-static softsh_result check_limits(const softsh_context *context, const softsh_occluders *o)
+static softsh_result check_limits(const softsh_occluders *o)
 {
+    const softsh_context *context = o->context;
     const struct {
         const char *what;
         VkDeviceSize size;
-    } ranges[] = {{"fan depth", o->layout.fan_depth.size}, {"pyramid", o->layout.pyramid.size}};
+    } ranges[] = {{"fan depth", o->layout.fan_depth.size},
+                  {o->layout.wide_levels ? "pyramid and full-resolution levels" : "pyramid", o->layout.ranges.size}};
     for (size_t i = 0; i < sizeof ranges / sizeof *ranges; i++)
         if (ranges[i].size > context->limits.maxStorageBufferRange)
             return softshi_fail(context, SOFTSH_ERROR_LIMIT,
-                                "softsh_occluders_info: the %s of %u layers of %u x %u takes %llu MiB, the device's "
+                                "softsh_occluders_info: %u layers of %u x %u take %llu MiB of %s, the device's "
                                 "maxStorageBufferRange is %llu MiB",
-                                ranges[i].what, o->max_layers, o->max_extent.width, o->max_extent.height,
-                                (unsigned long long)(ranges[i].size >> 20),
+                                o->max_layers, o->max_extent.width, o->max_extent.height,
+                                (unsigned long long)(ranges[i].size >> 20), ranges[i].what,
                                 (unsigned long long)(context->limits.maxStorageBufferRange >> 20));
-    const uint32_t image_layers = o->layout.wide_levels * o->max_layers;
-    if (o->layout.wide_extent.width > context->limits.maxImageDimension2D ||
-        o->layout.wide_extent.height > context->limits.maxImageDimension2D ||
-        image_layers > context->limits.maxImageArrayLayers)
-        return softshi_fail(
-            context, SOFTSH_ERROR_LIMIT,
-            "softsh_occluders_info: full-resolution levels of %u x %u x %u exceed the device's image limits",
-            o->layout.wide_extent.width, o->layout.wide_extent.height, image_layers);
-    return SOFTSH_SUCCESS;
-}
-
-static softsh_result create_resources(softsh_occluders *o)
-{
-    const softsh_context *context = o->context;
-    const VkBufferCreateInfo buffer_info = {
-        .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-        .size = o->layout.buffer_size,
-        .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
-                 VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
-                 VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-        .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
-    };
-    VkResult result = context->vk.CreateBuffer(context->device, &buffer_info, context->allocator, &o->block.buffer);
-    if (result != VK_SUCCESS) {
-        o->block.buffer = VK_NULL_HANDLE;
-        return softshi_fail_vulkan(context, result, "vkCreateBuffer");
-    }
-    /* An HSM has no wide levels, but its passes share a descriptor set that names the image. */
-    const bool wide = o->layout.wide_levels > 0;
-    const VkImageCreateInfo image_info = {
-        .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
-        .imageType = VK_IMAGE_TYPE_2D,
-        .format = VK_FORMAT_R32G32_SFLOAT,
-        .extent = {wide ? o->layout.wide_extent.width : 1, wide ? o->layout.wide_extent.height : 1, 1},
-        .mipLevels = 1,
-        .arrayLayers = wide ? o->layout.wide_levels * o->max_layers : 1,
-        .samples = VK_SAMPLE_COUNT_1_BIT,
-        .tiling = VK_IMAGE_TILING_OPTIMAL,
-        .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT,
-        .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
-        .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED,
-    };
-    VkImageFormatProperties most;
-    result = context->vk.GetPhysicalDeviceImageFormatProperties(context->physical_device, image_info.format,
-                                                                image_info.imageType, image_info.tiling,
-                                                                image_info.usage, 0, &most);
-    if (result != VK_SUCCESS)
-        return softshi_fail_vulkan(context, result, "vkGetPhysicalDeviceImageFormatProperties");
-    const VkDeviceSize size =
-        (VkDeviceSize)image_info.extent.width * image_info.extent.height * image_info.arrayLayers * 8;
-    if (size > most.maxResourceSize)
-        return softshi_fail(
-            context, SOFTSH_ERROR_LIMIT,
-            "softsh_occluders_info: full-resolution levels take %llu MiB, the device's images at most %llu MiB",
-            (unsigned long long)(size >> 20), (unsigned long long)(most.maxResourceSize >> 20));
-    result = context->vk.CreateImage(context->device, &image_info, context->allocator, &o->block.image);
-    if (result != VK_SUCCESS) {
-        o->block.image = VK_NULL_HANDLE;
-        return softshi_fail_vulkan(context, result, "vkCreateImage");
-    }
-    softshi_name_object(context, VK_OBJECT_TYPE_BUFFER, (uint64_t)o->block.buffer, o->name, "occluders");
-    softshi_name_object(context, VK_OBJECT_TYPE_IMAGE, (uint64_t)o->block.image, o->name, "wide levels");
-    softshi_block_measure(context, &o->block);
     return SOFTSH_SUCCESS;
 }
 
@@ -99,8 +38,8 @@ static softsh_result create_sets(softsh_occluders *o, uint32_t recordings)
     const VkDescriptorPoolSize sizes[] = {
         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1 + n},
         {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 3 + 3 * n},
-        {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1 + 2 * n},
-        {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 1 + n},
+        {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 2 * n},
+        {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, n},
     };
     const VkDescriptorPoolCreateInfo pool_info = {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
@@ -126,37 +65,21 @@ static softsh_result create_sets(softsh_occluders *o, uint32_t recordings)
     return result == VK_SUCCESS ? SOFTSH_SUCCESS : softshi_fail_vulkan(context, result, "vkAllocateDescriptorSets");
 }
 
-/* Once the memory is there: the image's view and the descriptors that never change. */
-static softsh_result finish(softsh_occluders *o)
+/* Once the memory is there: the descriptors that never change. */
+static void write_descriptors(const softsh_occluders *o)
 {
     const softsh_context *context = o->context;
-    const VkImageViewCreateInfo view_info = {
-        .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-        .image = o->block.image,
-        .viewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY,
-        .format = VK_FORMAT_R32G32_SFLOAT,
-        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, VK_REMAINING_ARRAY_LAYERS},
-    };
-    const VkResult result = context->vk.CreateImageView(context->device, &view_info, context->allocator, &o->wide_view);
-    if (result != VK_SUCCESS) {
-        o->wide_view = VK_NULL_HANDLE;
-        o->block.ready = false;
-        return softshi_fail_vulkan(context, result, "vkCreateImageView");
-    }
     const softshi_range plan = {o->layout.header.offset + sizeof(ss_occluders), sizeof(ss_plan)};
     const struct {
         uint32_t binding;
         VkDescriptorType type;
-        softshi_range range; /* of buffers */
+        softshi_range range;
     } list[SS_OCCLUDER_BINDINGS] = {
         {SS_BIND_OCCLUDERS, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, o->layout.header},
         {SS_BIND_FAN_DEPTH, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, o->layout.fan_depth},
-        {SS_BIND_PYRAMID, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, o->layout.pyramid},
-        {SS_BIND_WIDE, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, {0, 0}},
-        {SS_BIND_WIDE_OUT, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, {0, 0}},
+        {SS_BIND_RANGES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, o->layout.ranges},
         {SS_BIND_PLAN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, plan},
     };
-    const VkDescriptorImageInfo image = {VK_NULL_HANDLE, o->wide_view, VK_IMAGE_LAYOUT_GENERAL};
     VkDescriptorBufferInfo buffers[SS_OCCLUDER_BINDINGS];
     VkWriteDescriptorSet writes[SS_OCCLUDER_BINDINGS];
     for (uint32_t i = 0; i < SS_OCCLUDER_BINDINGS; i++) {
@@ -167,12 +90,10 @@ static softsh_result finish(softsh_occluders *o)
             .dstBinding = list[i].binding,
             .descriptorCount = 1,
             .descriptorType = list[i].type,
-            .pImageInfo = &image,
             .pBufferInfo = &buffers[i],
         };
     }
     context->vk.UpdateDescriptorSets(context->device, SS_OCCLUDER_BINDINGS, writes, 0, NULL);
-    return SOFTSH_SUCCESS;
 }
 
 softsh_result softsh_occluders_create(softsh_context *context, const softsh_occluders_info *info,
@@ -199,9 +120,9 @@ softsh_result softsh_occluders_create(softsh_context *context, const softsh_occl
     else if (info->accel == SOFTSH_ACCEL_MSSM)
         o->join_texels = UINT32_MAX;
     softshi_layout_occluders(o->max_extent, o->max_layers, o->join_texels, &o->layout);
-    result = check_limits(context, o);
+    result = check_limits(o);
     if (result == SOFTSH_SUCCESS)
-        result = create_resources(o);
+        result = softshi_block_create(context, &o->block, o->layout.buffer_size, o->name, "occluders");
     if (result == SOFTSH_SUCCESS)
         result = create_sets(o, info->max_recordings ? info->max_recordings : 4);
     if (result == SOFTSH_SUCCESS)
@@ -209,7 +130,7 @@ softsh_result softsh_occluders_create(softsh_context *context, const softsh_occl
     if (result == SOFTSH_SUCCESS && info->memory_mode == SOFTSH_MEMORY_LIBRARY) {
         result = softshi_block_allocate(context, &o->block);
         if (result == SOFTSH_SUCCESS)
-            result = finish(o);
+            write_descriptors(o);
     }
     if (result != SOFTSH_SUCCESS) {
         softsh_occluders_destroy(o);
@@ -227,8 +148,6 @@ void softsh_occluders_destroy(softsh_occluders *o)
     softshi_hierarchy_destroy(o);
     if (o->pool)
         context->vk.DestroyDescriptorPool(context->device, o->pool, context->allocator);
-    if (o->wide_view)
-        context->vk.DestroyImageView(context->device, o->wide_view, context->allocator);
     softshi_block_destroy(context, &o->block);
     if (o->io_sets)
         softshi_host_free(context->allocator, o->io_sets);
@@ -253,5 +172,7 @@ softsh_result softsh_occluders_bind_memory(softsh_occluders *o, VkDeviceMemory m
         return SOFTSH_ERROR_INVALID_ARGUMENT;
     const softsh_result result =
         softshi_block_bind(o->context, &o->block, memory, offset, size, "softsh_occluders_bind_memory");
-    return result == SOFTSH_SUCCESS ? finish(o) : result;
+    if (result == SOFTSH_SUCCESS)
+        write_descriptors(o);
+    return result;
 }

@@ -51,21 +51,15 @@ softsh_result softsh_get_requirements(PFN_vkGetInstanceProcAddr get_instance_pro
         (PFN_vkGetPhysicalDeviceProperties)get_instance_proc_addr(instance, "vkGetPhysicalDeviceProperties");
     const PFN_vkGetPhysicalDeviceFeatures get_features =
         (PFN_vkGetPhysicalDeviceFeatures)get_instance_proc_addr(instance, "vkGetPhysicalDeviceFeatures");
-    const PFN_vkGetPhysicalDeviceFormatProperties get_format =
-        (PFN_vkGetPhysicalDeviceFormatProperties)get_instance_proc_addr(instance,
-                                                                        "vkGetPhysicalDeviceFormatProperties");
-    if (!get_properties || !get_features || !get_format)
+    if (!get_properties || !get_features)
         return SOFTSH_ERROR_INVALID_ARGUMENT;
     VkPhysicalDeviceProperties properties;
     VkPhysicalDeviceFeatures features;
-    VkFormatProperties wide;
     get_properties(physical_device, &properties);
     get_features(physical_device, &features);
-    get_format(physical_device, VK_FORMAT_R32G32_SFLOAT, &wide);
-    const VkFormatFeatureFlags needed = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
-    /* Fan depth, pyramid and plan; control, tiles and filter values. */
+    /* Fan depth, ranges and plan; control, tiles and filter values. */
     const bool enough_buffers = properties.limits.maxPerStageDescriptorStorageBuffers >= 6;
-    out->supported = enough_buffers && properties.apiVersion >= VK_API_VERSION_1_1 &&
-                     features.shaderStorageImageWriteWithoutFormat && (wide.optimalTilingFeatures & needed) == needed;
+    out->supported =
+        enough_buffers && properties.apiVersion >= VK_API_VERSION_1_1 && features.shaderStorageImageWriteWithoutFormat;
     return SOFTSH_SUCCESS;
 }

@@ -8,7 +8,7 @@
 #include "techniques/techniques.h"
 #include "validate.h"
 
-static softsh_result create_buffer(softsh_view *v)
+static softsh_result check_limits(const softsh_view *v)
 {
     const softsh_context *context = v->context;
     const VkDeviceSize most = context->limits.maxStorageBufferRange;
@@ -19,21 +19,6 @@ static softsh_result create_buffer(softsh_view *v)
             v->max_extent.width, v->max_extent.height,
             (unsigned long long)((v->layout.filter.size > most ? v->layout.filter.size : v->layout.tiles.size) >> 20),
             (unsigned long long)(most >> 20));
-    const VkBufferCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-        .size = v->layout.buffer_size,
-        .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
-                 VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
-                 VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-        .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
-    };
-    const VkResult result = context->vk.CreateBuffer(context->device, &info, context->allocator, &v->block.buffer);
-    if (result != VK_SUCCESS) {
-        v->block.buffer = VK_NULL_HANDLE;
-        return softshi_fail_vulkan(context, result, "vkCreateBuffer");
-    }
-    softshi_name_object(context, VK_OBJECT_TYPE_BUFFER, (uint64_t)v->block.buffer, v->name, "view scratch");
-    softshi_block_measure(context, &v->block);
     return SOFTSH_SUCCESS;
 }
 
@@ -118,7 +103,9 @@ softsh_result softsh_view_create(softsh_context *context, const softsh_view_info
     v->stats = info->stats != 0;
     v->normals = info->normals != 0;
     softshi_layout_view(v->max_extent, v->settings.filter_passes > 0, &v->layout);
-    result = create_buffer(v);
+    result = check_limits(v);
+    if (result == SOFTSH_SUCCESS)
+        result = softshi_block_create(context, &v->block, v->layout.buffer_size, v->name, "view scratch");
     if (result == SOFTSH_SUCCESS)
         result = create_sets(v, info->max_recordings ? info->max_recordings : 16);
     if (result == SOFTSH_SUCCESS)

@@ -144,7 +144,8 @@ typedef struct softsh_map {
 typedef enum softsh_accel {
     SOFTSH_ACCEL_AUTO = 0, /* YSM */
     SOFTSH_ACCEL_HSM = 1,  /* min/max pyramid: smallest, loosest */
-    SOFTSH_ACCEL_MSSM = 2, /* every level at full resolution: tightest, 8 bytes * texels * levels */
+    SOFTSH_ACCEL_MSSM = 2, /* every level at full resolution: tightest, 8 bytes * texels * levels, for all layers
+                            * together within the device's maxStorageBufferRange */
     SOFTSH_ACCEL_YSM = 3   /* pyramid down to ysm_join texels, full resolution from there */
 } softsh_accel;
 

@@ -18,8 +18,8 @@ softsh_result softshi_hierarchy_create(softsh_occluders *o)
         uint32_t from_fan_depth;
         softshi_pipeline *pipeline;
     } list[] = {
-        {SOFTSHI_SHADER_HIERARCHY_CONVERT, 0, &p->convert}, {SOFTSHI_SHADER_HIERARCHY_REDUCE, 1, &p->reduce_first},
-        {SOFTSHI_SHADER_HIERARCHY_REDUCE, 0, &p->reduce},   {SOFTSHI_SHADER_HIERARCHY_PLAN, 0, &p->plan},
+        {SOFTSHI_SHADER_HIERARCHY_CONVERT, 0, &p->convert}, {SOFTSHI_SHADER_HIERARCHY_REDUCE, 0, &p->reduce},
+        {SOFTSHI_SHADER_HIERARCHY_PLAN, 0, &p->plan},       {SOFTSHI_SHADER_HIERARCHY_WIDEN, 1, &p->widen_first},
         {SOFTSHI_SHADER_HIERARCHY_WIDEN, 0, &p->widen},
     };
     for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
@@ -34,68 +34,66 @@ softsh_result softshi_hierarchy_create(softsh_occluders *o)
 void softshi_hierarchy_destroy(softsh_occluders *o)
 {
     softshi_hierarchy_pipelines *p = &o->pipelines;
-    softshi_pipeline *const all[] = {&p->convert, &p->reduce_first, &p->reduce, &p->plan, &p->widen};
+    softshi_pipeline *const all[] = {&p->convert, &p->reduce, &p->plan, &p->widen_first, &p->widen};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         softshi_pipeline_destroy(o->context, all[i]);
 }
 
-static softshi_pass cover(const softshi_pipeline *pipeline, uint32_t width, uint32_t height)
+static uint32_t divide_up(uint32_t a, uint32_t b)
 {
-    return (softshi_pass){.pipeline = pipeline,
-                          .groups = {(width + GROUP_X - 1) / GROUP_X, (height + GROUP_Y - 1) / GROUP_Y, 1}};
+    return (a + b - 1) / b;
 }
 
 void softshi_hierarchy_record_convert(softshi_recorder *recorder, const softsh_occluders *o, VkExtent2D extent,
                                       const ss_convert_push *push)
 {
-    softshi_pass pass = cover(&o->pipelines.convert, extent.width, extent.height);
-    pass.reads = SOFTSHI_HEADER;
-    /* Layers write different parts and need no order between them. */
-    pass.writes = push->layer == 0 ? SOFTSHI_FAN_DEPTH : 0;
-    pass.push = push;
-    pass.push_size = sizeof *push;
+    const softshi_pass pass = {
+        .pipeline = &o->pipelines.convert,
+        .reads = SOFTSHI_HEADER,
+        /* Layers write different parts and need no order between them. */
+        .writes = push->layer == 0 ? SOFTSHI_FAN_DEPTH | SOFTSHI_PYRAMID : 0,
+        .groups = {divide_up(extent.width, 4 * GROUP_X), divide_up(extent.height, 4 * GROUP_Y), 1},
+        .push = push,
+        .push_size = sizeof *push,
+    };
     softshi_record_pass(recorder, &pass);
 }
 
 void softshi_hierarchy_record_levels(softshi_recorder *recorder, const softsh_occluders *o, VkExtent2D extent,
                                      const softshi_occluder_layout *layout, uint32_t layers)
 {
-    for (uint32_t level = 1; level <= layout->top; level++) {
-        for (uint32_t layer = 0; layer < layers; layer++) {
-            const ss_level_push push = {.level = level, .layer = layer};
-            softshi_pass pass =
-                cover(level == 1 ? &o->pipelines.reduce_first : &o->pipelines.reduce,
-                      softshi_level_size(extent.width, level), softshi_level_size(extent.height, level));
-            pass.reads = SOFTSHI_HEADER | SOFTSHI_FAN_DEPTH;
-            pass.writes = layer == 0 ? SOFTSHI_PYRAMID : 0;
-            pass.push = &push;
-            pass.push_size = sizeof push;
-            softshi_record_pass(recorder, &pass);
-        }
+    for (uint32_t level = 3; level <= layout->top; level += 2) {
+        const ss_level_push push = {.level = level};
+        const softshi_pass pass = {
+            .pipeline = &o->pipelines.reduce,
+            .reads = SOFTSHI_HEADER,
+            .writes = SOFTSHI_PYRAMID,
+            .groups = {divide_up(softshi_level_size(extent.width, level + 1), GROUP_X),
+                       divide_up(softshi_level_size(extent.height, level + 1), GROUP_Y), layers},
+            .push = &push,
+            .push_size = sizeof push,
+        };
+        softshi_record_pass(recorder, &pass);
     }
     const softshi_pass plan = {
         .pipeline = &o->pipelines.plan,
-        .reads = SOFTSHI_HEADER | SOFTSHI_FAN_DEPTH | SOFTSHI_PYRAMID,
+        .reads = SOFTSHI_HEADER | SOFTSHI_PYRAMID,
         .writes = SOFTSHI_PLAN,
         .groups = {1, 1, 1},
     };
     softshi_record_pass(recorder, &plan);
     for (uint32_t level = 1; level <= layout->wide_levels; level++) {
-        for (uint32_t layer = 0; layer < layers; layer++) {
-            const ss_level_push push = {.level = level, .layer = layer};
-            const softshi_pass pass = {
-                .pipeline = &o->pipelines.widen,
-                .reads = SOFTSHI_HEADER | SOFTSHI_PLAN | SOFTSHI_FAN_DEPTH | SOFTSHI_PYRAMID,
-                /* Layers are apart, but each pass reads and writes one view of them all, and validation goes by views.
-                 */
-                .writes = SOFTSHI_WIDE,
-                .push = &push,
-                .push_size = sizeof push,
-                .indirect = o->block.buffer,
-                .indirect_offset = o->layout.header.offset + sizeof(ss_occluders) + offsetof(ss_plan, args) +
-                                   (level - 1) * sizeof(ss_uvec4),
-            };
-            softshi_record_pass(recorder, &pass);
-        }
+        const ss_level_push push = {.level = level};
+        const softshi_pass pass = {
+            .pipeline = level == 1 && layout->join == 0 ? &o->pipelines.widen_first : &o->pipelines.widen,
+            .reads = SOFTSHI_HEADER | SOFTSHI_PLAN | SOFTSHI_FAN_DEPTH | SOFTSHI_PYRAMID,
+            .writes = SOFTSHI_WIDE,
+            .push = &push,
+            .push_size = sizeof push,
+            .indirect = o->block.buffer,
+            .indirect_offset = o->layout.header.offset + sizeof(ss_occluders) + offsetof(ss_plan, args) +
+                               (level - 1) * sizeof(ss_uvec4),
+        };
+        softshi_record_pass(recorder, &pass);
     }
 }

@@ -8,7 +8,6 @@
 
 #define SOFTSHI_INSTANCE_FUNCTIONS(X)                                                                                  \
     X(GetPhysicalDeviceProperties2)                                                                                    \
-    X(GetPhysicalDeviceImageFormatProperties)                                                                          \
     X(GetPhysicalDeviceFormatProperties)                                                                               \
     X(GetPhysicalDeviceMemoryProperties)
 
@@ -17,12 +16,6 @@
     X(DestroyBuffer)                                                                                                   \
     X(GetBufferMemoryRequirements)                                                                                     \
     X(BindBufferMemory)                                                                                                \
-    X(CreateImage)                                                                                                     \
-    X(DestroyImage)                                                                                                    \
-    X(GetImageMemoryRequirements)                                                                                      \
-    X(BindImageMemory)                                                                                                 \
-    X(CreateImageView)                                                                                                 \
-    X(DestroyImageView)                                                                                                \
     X(AllocateMemory)                                                                                                  \
     X(FreeMemory)                                                                                                      \
     X(CreateShaderModule)                                                                                              \

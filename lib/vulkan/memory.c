@@ -19,61 +19,55 @@ void softshi_host_free(const VkAllocationCallbacks *allocator, void *memory)
         free(memory);
 }
 
-static VkDeviceSize align(VkDeviceSize value, VkDeviceSize alignment)
+softsh_result softshi_block_create(const softsh_context *context, softshi_block *block, VkDeviceSize size,
+                                   const char *owner, const char *what)
 {
-    return (value + alignment - 1) / alignment * alignment;
-}
-
-void softshi_block_measure(const softsh_context *context, softshi_block *block)
-{
+    const VkBufferCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+        .size = size,
+        .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
+                 VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+                 VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+        .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
+    };
+    const VkResult result = context->vk.CreateBuffer(context->device, &info, context->allocator, &block->buffer);
+    if (result != VK_SUCCESS) {
+        block->buffer = VK_NULL_HANDLE;
+        return softshi_fail_vulkan(context, result, "vkCreateBuffer");
+    }
+    softshi_name_object(context, VK_OBJECT_TYPE_BUFFER, (uint64_t)block->buffer, owner, what);
     context->vk.GetBufferMemoryRequirements(context->device, block->buffer, &block->requirements);
-    if (!block->image)
-        return;
-    VkMemoryRequirements image;
-    context->vk.GetImageMemoryRequirements(context->device, block->image, &image);
-    /* Buffer and image in one block: keep them apart by the device's granularity. */
-    VkDeviceSize alignment = image.alignment;
-    if (alignment < context->limits.bufferImageGranularity)
-        alignment = context->limits.bufferImageGranularity;
-    block->image_offset = align(block->requirements.size, alignment);
-    block->requirements.size = block->image_offset + image.size;
-    if (block->requirements.alignment < alignment)
-        block->requirements.alignment = alignment;
-    block->requirements.memoryTypeBits &= image.memoryTypeBits;
+    return SOFTSH_SUCCESS;
 }
 
 static softsh_result bind(const softsh_context *context, softshi_block *block, VkDeviceMemory memory,
                           VkDeviceSize offset)
 {
     block->bound = true;
-    VkResult result = context->vk.BindBufferMemory(context->device, block->buffer, memory, offset);
-    if (result == VK_SUCCESS && block->image)
-        result = context->vk.BindImageMemory(context->device, block->image, memory, offset + block->image_offset);
+    const VkResult result = context->vk.BindBufferMemory(context->device, block->buffer, memory, offset);
     if (result != VK_SUCCESS)
-        return softshi_fail_vulkan(context, result, "binding memory");
+        return softshi_fail_vulkan(context, result, "vkBindBufferMemory");
     block->ready = true;
     return SOFTSH_SUCCESS;
 }
 
 static uint32_t choose_type(const softsh_context *context, uint32_t bits)
 {
-    uint32_t any = UINT32_MAX;
-    for (uint32_t i = 0; i < context->memory.memoryTypeCount; i++) {
-        if (!(bits & 1u << i))
+    uint32_t chosen = 0; /* a buffer suits at least one */
+    bool local = false;
+    for (uint32_t i = context->memory.memoryTypeCount; i-- > 0;) {
+        const bool here = context->memory.memoryTypes[i].propertyFlags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
+        if (!(bits & 1u << i) || (local && !here))
             continue;
-        if (context->memory.memoryTypes[i].propertyFlags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT)
-            return i;
-        if (any == UINT32_MAX)
-            any = i;
+        chosen = i;
+        local = here;
     }
-    return any;
+    return chosen;
 }
 
 softsh_result softshi_block_allocate(const softsh_context *context, softshi_block *block)
 {
     const uint32_t type = choose_type(context, block->requirements.memoryTypeBits);
-    if (type == UINT32_MAX)
-        return softshi_fail(context, SOFTSH_ERROR_UNSUPPORTED, "no memory type suits both a buffer and an image");
     const VkDeviceSize heap = context->memory.memoryHeaps[context->memory.memoryTypes[type].heapIndex].size;
     const VkDeviceSize most = heap < context->max_allocation ? heap : context->max_allocation;
     if (block->requirements.size > most)
@@ -117,8 +111,6 @@ void softshi_block_destroy(const softsh_context *context, softshi_block *block)
 {
     if (block->buffer)
         context->vk.DestroyBuffer(context->device, block->buffer, context->allocator);
-    if (block->image)
-        context->vk.DestroyImage(context->device, block->image, context->allocator);
     if (block->owned)
         context->vk.FreeMemory(context->device, block->owned, context->allocator);
     *block = (softshi_block){0};

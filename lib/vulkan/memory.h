@@ -7,19 +7,20 @@
 void *softshi_host_allocate(const VkAllocationCallbacks *allocator, size_t size);
 void softshi_host_free(const VkAllocationCallbacks *allocator, void *memory);
 
-/* An object's buffer and optional image, one behind the other in one allocation. */
+/* An object's one buffer, and the memory under it. */
 typedef struct softshi_block {
     VkBuffer buffer;
-    VkImage image; /* may be VK_NULL_HANDLE */
-    VkDeviceSize image_offset;
     VkMemoryRequirements requirements;
     VkDeviceMemory owned; /* VK_NULL_HANDLE if the memory is the caller's */
     bool bound;           /* or tried to be: Vulkan binds once */
-    bool ready;           /* bound, and the object made usable with it */
+    bool ready;           /* bound */
 } softshi_block;
 
-/* Works out `requirements` and `image_offset` from buffer and image. */
-void softshi_block_measure(const softsh_context *context, softshi_block *block);
+/* Makes the buffer, for every use the library has of one, and asks for its requirements. `owner` and `what` are its
+ * name.
+ */
+softsh_result softshi_block_create(const softsh_context *context, softshi_block *block, VkDeviceSize size,
+                                   const char *owner, const char *what);
 /* Allocates and binds. */
 softsh_result softshi_block_allocate(const softsh_context *context, softshi_block *block);
 /* Binds the caller's memory. */

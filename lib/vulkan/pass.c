@@ -107,22 +107,6 @@ void softshi_record_copy(softshi_recorder *recorder, uint32_t reads, VkBuffer fr
     recorder->context->vk.CmdCopyBuffer(recorder->cmd, from, to, 1, &region);
 }
 
-void softshi_record_discard_image(softshi_recorder *recorder, VkImage image, uint32_t layers)
-{
-    const VkImageMemoryBarrier transition = {
-        .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
-        .dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT,
-        .oldLayout = VK_IMAGE_LAYOUT_UNDEFINED,
-        .newLayout = VK_IMAGE_LAYOUT_GENERAL,
-        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .image = image,
-        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, layers},
-    };
-    recorder->context->vk.CmdPipelineBarrier(recorder->cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
-                                             VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0, 0, NULL, 0, NULL, 1, &transition);
-}
-
 void softshi_record_release(softshi_recorder *recorder)
 {
     if (recorder->written)

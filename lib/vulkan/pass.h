@@ -9,8 +9,8 @@ typedef enum softshi_resource {
     SOFTSHI_HEADER = 1 << 0, /* ss_occluders */
     SOFTSHI_PLAN = 1 << 1,   /* ss_plan: arguments and levels built */
     SOFTSHI_FAN_DEPTH = 1 << 2,
-    SOFTSHI_PYRAMID = 1 << 3,
-    SOFTSHI_WIDE = 1 << 4,
+    SOFTSHI_PYRAMID = 1 << 3, /* of the ranges */
+    SOFTSHI_WIDE = 1 << 4,    /* likewise */
     SOFTSHI_FRAME = 1 << 5,
     SOFTSHI_CONTROL = 1 << 6, /* arguments, list lengths, counters */
     SOFTSHI_TILES = 1 << 7,
@@ -50,8 +50,6 @@ void softshi_record_update(softshi_recorder *recorder, uint32_t writes, VkBuffer
                            const void *data, VkDeviceSize size);
 void softshi_record_copy(softshi_recorder *recorder, uint32_t reads, VkBuffer from, VkDeviceSize from_offset,
                          VkBuffer to, VkDeviceSize to_offset, VkDeviceSize size);
-/* The wide image, its contents discarded, to GENERAL. */
-void softshi_record_discard_image(softshi_recorder *recorder, VkImage image, uint32_t layers);
 /* Makes everything written so far visible to compute shaders recorded later by anybody. */
 void softshi_record_release(softshi_recorder *recorder);
 

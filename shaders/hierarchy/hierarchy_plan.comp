@@ -14,9 +14,9 @@ layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_PLAN, std430) writeonly buffer 
 {
     ss_plan plan;
 };
-layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_PYRAMID, std430) readonly buffer ss_pyramid_buffer
+layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_RANGES, std430) readonly buffer ss_ranges_buffer
 {
-    vec2 pyramid[];
+    vec2 ranges[];
 };
 
 void main()
@@ -24,7 +24,7 @@ void main()
     float nearest = occ.depths.w, farthest = occ.depths.w;
     for (uint layer = 0u; layer < occ.size.z; layer++) {
         const uint top = occ.levels.x;
-        const vec2 range = pyramid[layer * occ.strides.y + occ.pyramid[top].x];
+        const vec2 range = ranges[layer * occ.strides.y + occ.pyramid[top].x];
         nearest = max(nearest, range.y);
         farthest = min(farthest, range.x);
     }
@@ -39,9 +39,12 @@ void main()
     if (!(texels <= map_side))
         texels = map_side;
     const uint cells = (uint(ceil(texels)) >> occ.levels.y) + 2u;
-    const uint wanted = min(uint(findMSB(cells)), occ.levels.w);
+    const uint wanted = min(uint(findMSB(cells)), occ.levels.z);
     const uvec2 size = (occ.size.xy + (1u << occ.levels.y) - 1u) >> occ.levels.y;
-    for (uint i = 0u; i < SS_MAX_LEVELS; i++)
-        plan.args[i] = i < wanted ? uvec4((size + uvec2(31u, 3u)) / uvec2(32u, 4u), 1u, 0u) : uvec4(0u, 1u, 1u, 0u);
-    plan.built = uvec4(wanted, occ.levels.w - wanted, 0u, 0u);
+    for (uint i = 0u; i < SS_MAX_LEVELS; i++) {
+        // Rows of invocations: every one makes SS_WIDEN_ROWS rows of texels, 2^i apart.
+        const uint block = SS_WIDEN_ROWS << i, rows = (size.y + block - 1u) / block << i;
+        plan.args[i] = uvec4(i < wanted ? (size.x + 31u) / 32u : 0u, (rows + 3u) / 4u, occ.size.z, 0u);
+    }
+    plan.built = uvec4(wanted, occ.levels.z - wanted, 0u, 0u);
 }

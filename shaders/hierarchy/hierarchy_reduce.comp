@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One level of the min/max pyramid (HSM; Guennebaud et al. 2006) from the one below. Odd sizes: the last texel of a level
-// covers what is left of its block.
+// Two levels of the min/max pyramid (HSM; Guennebaud et al. 2006) from the one below them, of all layers. Odd sizes: the last
+// texel of a level covers what is left of its block.
 #include "ss_types.h"
 
 layout(local_size_x = 32, local_size_y = 4) in;
@@ -10,44 +10,40 @@ layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_OCCLUDERS, std140) uniform ss_o
 {
     ss_occluders occ;
 };
-layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_FAN_DEPTH, std430) readonly buffer ss_fan_depth_buffer
+// One binding as two variables: what a pass reads and what it writes are apart, and validation can tell them apart as well.
+layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_RANGES, std430) readonly buffer ss_ranges_buffer
 {
-    float fan_depth[];
+    vec2 ranges[];
 };
-layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_PYRAMID, std430) buffer ss_pyramid_buffer
+layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_RANGES, std430) writeonly buffer ss_made_buffer
 {
-    vec2 pyramid[];
+    vec2 made[];
 };
 layout(push_constant) uniform ss_push
 {
     ss_level_push push;
 };
-layout(constant_id = SS_SPEC_COUNT) const bool FROM_FAN_DEPTH = false; // level 1 reads level 0, which has one value a texel
-
-uint level_offset(uint level)
-{
-    return push.layer * occ.strides.y + occ.pyramid[level].x;
-}
 
 void main()
 {
-    const uvec2 size = (occ.size.xy + (1u << push.level) - 1u) >> push.level;
-    const uvec2 at = gl_GlobalInvocationID.xy;
-    if (any(greaterThanEqual(at, size)))
+    const ivec2 at = ivec2(gl_GlobalInvocationID.xy), whole_map = ivec2(occ.size.xy) - 1;
+    const ivec2 last = whole_map >> push.level, last_below = whole_map >> (push.level - 1u);
+    if (any(greaterThan(2 * at, last)))
         return;
-    const uvec2 below = (occ.size.xy + (1u << (push.level - 1u)) - 1u) >> (push.level - 1u);
-    const uvec2 a = 2u * at, b = min(a + 1u, below - 1u);
-    vec2 range;
-    if (FROM_FAN_DEPTH) {
-        const uint base = push.layer * occ.strides.x;
-        const float p = fan_depth[base + a.y * below.x + a.x], q = fan_depth[base + a.y * below.x + b.x];
-        const float r = fan_depth[base + b.y * below.x + a.x], s = fan_depth[base + b.y * below.x + b.x];
-        range = vec2(min(min(p, q), min(r, s)), max(max(p, q), max(r, s)));
-    } else {
-        const uint base = level_offset(push.level - 1u);
-        const vec2 p = pyramid[base + a.y * below.x + a.x], q = pyramid[base + a.y * below.x + b.x];
-        const vec2 r = pyramid[base + b.y * below.x + a.x], s = pyramid[base + b.y * below.x + b.x];
-        range = vec2(min(min(p.x, q.x), min(r.x, s.x)), max(max(p.y, q.y), max(r.y, s.y)));
+    const uint layer = gl_GlobalInvocationID.z * occ.strides.y, below = layer + occ.pyramid[push.level - 1u].x;
+    const uint level = layer + occ.pyramid[push.level].x;
+    const int row = last.x + 1, row_below = last_below.x + 1;
+    vec2 whole = vec2(3e38, -3e38);
+    for (int i = 0; i < 4; i++) {
+        const ivec2 block = 2 * at + ivec2(i & 1, i >> 1);
+        const ivec2 a = min(2 * block, last_below), b = min(2 * block + 1, last_below);
+        const vec2 p = ranges[below + uint(a.y * row_below + a.x)], q = ranges[below + uint(a.y * row_below + b.x)];
+        const vec2 r = ranges[below + uint(b.y * row_below + a.x)], s = ranges[below + uint(b.y * row_below + b.x)];
+        const vec2 range = vec2(min(min(p.x, q.x), min(r.x, s.x)), max(max(p.y, q.y), max(r.y, s.y)));
+        if (all(lessThanEqual(block, last)))
+            made[level + uint(block.y * row + block.x)] = range;
+        whole = vec2(min(whole.x, range.x), max(whole.y, range.y));
     }
-    pyramid[level_offset(push.level) + at.y * size.x + at.x] = range;
+    if (push.level < occ.levels.x)
+        made[layer + occ.pyramid[push.level + 1u].x + uint(at.y) * occ.pyramid[push.level + 1u].y + uint(at.x)] = whole;
 }

@@ -1,42 +1,70 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
-// One MSSM level (Schwarz and Stamminger 2007, section 5): the range of 2^i x 2^i cells around each cell, from four texels of
-// the level below. The cells are texels of pyramid level `join`: 0 gives the MSSM, more a YSM (2008, section 6).
+// One MSSM level (Schwarz and Stamminger 2007, section 5) of all layers: the range of 2^i x 2^i cells around each cell, from
+// four texels of the level below. The cells are texels of pyramid level `join`: 0 gives the MSSM, more a YSM (2008, section 6).
 #include "ss_types.h"
-#include "ss_specialization.glsl"
-#include "ss_occluder_bindings.glsl"
 
 layout(local_size_x = 32, local_size_y = 4) in;
 
-layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_WIDE_OUT) uniform writeonly image2DArray wide_out;
+layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_OCCLUDERS, std140) uniform ss_occluders_buffer
+{
+    ss_occluders occ;
+};
+layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_FAN_DEPTH, std430) readonly buffer ss_fan_depth_buffer
+{
+    float fan_depth[];
+};
+// One binding as two variables: what a pass reads and what it writes are apart, and validation can tell them apart as well.
+layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_RANGES, std430) readonly buffer ss_ranges_buffer
+{
+    vec2 ranges[];
+};
+layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_RANGES, std430) writeonly buffer ss_made_buffer
+{
+    vec2 made[];
+};
+layout(constant_id = SS_SPEC_COUNT) const bool FROM_FAN_DEPTH = false; // an MSSM's level 1
 layout(push_constant) uniform ss_push
 {
     ss_level_push push;
 };
 
-vec2 below(ivec2 at, ivec2 size)
+
+vec2 unite(vec2 a, vec2 b)
 {
-    const ivec2 t = clamp(at, ivec2(0), size - 1);
-    if (push.level > 1u)
-        return texelFetch(wide, ivec3(t, int(push.layer * occ.levels.z + push.level) - 2), 0).xy;
-    const uint join = occ.levels.y, i = uint(t.y * size.x + t.x);
-    if (join == 0u)
-        return vec2(fan_depth[push.layer * occ.strides.x + i]);
-    return pyramid[push.layer * occ.strides.y + occ.pyramid[join].x + i];
+    return vec2(min(a.x, b.x), max(a.y, b.y));
+}
+
+// A texel of the level below.
+vec2 load(uint i)
+{
+    return FROM_FAN_DEPTH ? vec2(fan_depth[i]) : ranges[i];
 }
 
 void main()
 {
     const ivec2 size = ivec2((occ.size.xy + (1u << occ.levels.y) - 1u) >> occ.levels.y);
-    const ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(at, size)))
+    const uint layer = gl_GlobalInvocationID.z * occ.strides.y;
+    // Level 1 covers cells x - 1 and x; level i > 1 unites the level below at x - 2^(i-2) and x + 2^(i-2): either way two
+    // texels 2^(i-1) apart, so that one row of them serves the texels above and below it.
+    const int shift = int(push.level) - 1, apart = 1 << shift, lo = -max(apart >> 1, 1);
+    const int x = int(gl_GlobalInvocationID.x), row = int(gl_GlobalInvocationID.y);
+    int y = ((row >> shift) * SS_WIDEN_ROWS << shift) + (row & (apart - 1));
+    if (x >= size.x || y >= size.y)
         return;
-    // Level 1 covers cells x - 1 and x; level i > 1 unites the level below at x - 2^(i-2) and x + 2^(i-2).
-    const int lo = push.level == 1u ? -1 : -(1 << (push.level - 2u));
-    const int hi = push.level == 1u ? 0 : -lo;
-    const vec2 a = below(at + ivec2(lo, lo), size), b = below(at + ivec2(hi, lo), size);
-    const vec2 c = below(at + ivec2(lo, hi), size), d = below(at + ivec2(hi, hi), size);
-    const vec2 range = vec2(min(min(a.x, b.x), min(c.x, d.x)), max(max(a.y, b.y), max(c.y, d.y)));
-    imageStore(wide_out, ivec3(at, int(push.layer * occ.levels.z + push.level) - 1), vec4(range, 0.0, 0.0));
+    const uint to = layer + occ.strides.z + uint(shift) * occ.strides.w;
+    uint from = shift > 0 ? to - occ.strides.w : layer + occ.pyramid[occ.levels.y].x;
+    if (FROM_FAN_DEPTH)
+        from = gl_GlobalInvocationID.z * occ.strides.x;
+    const uint left = from + uint(max(x + lo, 0)), right = from + uint(min(x + lo + apart, size.x - 1));
+    const uint first = uint(max(y + lo, 0) * size.x);
+    vec2 above = unite(load(left + first), load(right + first));
+    for (int i = 0; i < SS_WIDEN_ROWS; i++) {
+        const uint next = uint(min(y + lo + apart, size.y - 1) * size.x);
+        const vec2 below = unite(load(left + next), load(right + next));
+        if (y < size.y)
+            made[to + uint(y * size.x + x)] = unite(above, below);
+        above = below;
+        y += apart;
+    }
 }

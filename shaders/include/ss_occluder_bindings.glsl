@@ -11,11 +11,10 @@ layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_FAN_DEPTH, std430) readonly buf
 {
     float fan_depth[];
 };
-layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_PYRAMID, std430) readonly buffer ss_pyramid_buffer
+layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_RANGES, std430) readonly buffer ss_ranges_buffer
 {
-    vec2 pyramid[];
+    vec2 ranges[];
 };
-layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_WIDE) uniform texture2DArray wide;
 
 uint ss_layers()
 {

@@ -35,11 +35,10 @@ typedef struct ss_ivec4 {
 #define SS_SET_OCCLUDERS 0
 #define SS_BIND_OCCLUDERS 0 /* uniform: ss_occluders and ss_plan */
 #define SS_BIND_FAN_DEPTH 1 /* float per texel and layer: level 0 */
-#define SS_BIND_PYRAMID 2   /* vec2 (farthest, nearest) per HSM texel, levels 1 to top, layer after layer */
-#define SS_BIND_WIDE 3      /* sampled RG32F array: MSSM levels 1 to n of a layer, layer after layer */
-#define SS_BIND_WIDE_OUT 4  /* the same as storage image */
-#define SS_BIND_PLAN 5      /* ss_plan, where it is written */
-#define SS_OCCLUDER_BINDINGS 6
+#define SS_BIND_RANGES 2 /* vec2 (farthest, nearest) per texel: a layer's HSM levels 1 to top, its MSSM levels 1 to n  \
+                          */
+#define SS_BIND_PLAN 3   /* ss_plan, where it is written */
+#define SS_OCCLUDER_BINDINGS 4
 
 #define SS_SET_IO 1
 #define SS_BIND_DEPTH 0      /* sampled: the map (build) or the camera's depth */
@@ -76,6 +75,7 @@ typedef struct ss_ivec4 {
 #define SS_TILE_PIXELS 64
 #define SS_EVALUATE_GROUP 64
 #define SS_MAX_LEVELS 16      /* levels of a 32768 texel map */
+#define SS_WIDEN_ROWS 4       /* that one invocation of hierarchy_widen makes */
 #define SS_TILE_REFINEMENTS 2 /* of kernels: a third pays for pixels only */
 #define SS_MAX_REFINEMENTS 3
 /* Words per tile in the tiles buffer: state, undecided list (tile, nearest occluder), and scratch that holds the bounds
@@ -101,8 +101,8 @@ SS_STRUCT(ss_occluders)
     SS_VEC4 depths;     /* map's part of eta; tangent (or world size) of a texel in u, v; fan depth of the far plane */
     SS_VEC4 extent;     /* half side of the square that areas are clipped to; unused */
     SS_UVEC4 size;      /* width, height, layers; unused */
-    SS_UVEC4 levels;    /* top of the pyramid, join level, wide levels allocated, of this map */
-    SS_UVEC4 strides;   /* texels per layer: fan depth, pyramid; unused */
+    SS_UVEC4 levels;    /* top of the pyramid, join level, wide levels there is room for, their width */
+    SS_UVEC4 strides;   /* texels per layer: fan depth, ranges; first texel of wide level 1, texels per wide level */
     SS_UVEC4 unused[8]; /* ss_plan begins at a multiple of every offset alignment */
     SS_UVEC4 pyramid[SS_MAX_LEVELS]; /* per level: first texel, width; level 0 and the rest unused */
 }
@@ -162,8 +162,7 @@ SS_STRUCT_END(ss_convert_push);
 SS_STRUCT(ss_level_push)
 {
     SS_UINT level; /* to build */
-    SS_UINT layer;
-    SS_UINT unused[2];
+    SS_UINT unused[3];
 }
 SS_STRUCT_END(ss_level_push);
 

@@ -509,14 +509,55 @@ static void large_maps(void **state)
     scene_expect_silence(s);
 }
 
+/* An MSSM of 1024 x 1024 fits every device, one of 2048 x 2048 those with more than the least maxStorageBufferRange. */
+static void large_multi_scale_maps(void **state)
+{
+    scene *s = *state;
+    scene_inputs in;
+    softsh_occluders *occluders;
+    VkPhysicalDeviceProperties properties;
+    char limit[64];
+    softsh_context *context = scene_context(s, false, NULL);
+    vkGetPhysicalDeviceProperties(s->g.physical_device, &properties);
+    const unsigned most = properties.limits.maxStorageBufferRange >> 20;
+    snprintf(limit, sizeof limit, "maxStorageBufferRange is %u MiB", most);
+    scene_fill(s, LAMP_RECTANGLE, 1, &in);
+    in.occluders.max_layers = 1;
+    in.occluders.accel = SOFTSH_ACCEL_MSSM;
+    in.occluders.max_extent = (VkExtent2D){1024, 1024};
+    assert_int_equal(softsh_occluders_create(context, &in.occluders, &occluders), SOFTSH_SUCCESS);
+    softsh_occluders_destroy(occluders);
+    in.occluders.max_extent = (VkExtent2D){2048, 2048};
+    scene_message_count = 0;
+    const softsh_result result = softsh_occluders_create(context, &in.occluders, &occluders);
+    if (result == SOFTSH_SUCCESS) {
+        assert_true(most >= 362);
+        softsh_occluders_destroy(occluders);
+    } else if (most < 362) {
+        assert_int_equal(result, SOFTSH_ERROR_LIMIT);
+        assert_int_equal(scene_message_count, 1);
+        scene_expect_words("2048 x 2048 take 362 MiB");
+        scene_expect_words(limit);
+    }
+    scene_message_count = 0;
+    softsh_context_destroy(context);
+    scene_expect_silence(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(plain_pictures),  cmocka_unit_test(recording_allocates_nothing),
-        cmocka_unit_test(caller_memory),   cmocka_unit_test(many_recordings),
-        cmocka_unit_test(submitted_twice), cmocka_unit_test(two_threads),
-        cmocka_unit_test(shared_view),     cmocka_unit_test(timestamps_and_names),
-        cmocka_unit_test(statistics),      cmocka_unit_test(large_maps),
+        cmocka_unit_test(plain_pictures),
+        cmocka_unit_test(recording_allocates_nothing),
+        cmocka_unit_test(caller_memory),
+        cmocka_unit_test(many_recordings),
+        cmocka_unit_test(submitted_twice),
+        cmocka_unit_test(two_threads),
+        cmocka_unit_test(shared_view),
+        cmocka_unit_test(timestamps_and_names),
+        cmocka_unit_test(statistics),
+        cmocka_unit_test(large_maps),
+        cmocka_unit_test(large_multi_scale_maps),
     };
     return cmocka_run_group_tests_name("contract", tests, scene_setup, scene_teardown);
 }

@@ -146,10 +146,6 @@ static bool dies(const char *kind, uint64_t handle)
 
 CREATE(Buffer, CreateBuffer, VkBufferCreateInfo)
 DESTROY(Buffer, DestroyBuffer)
-CREATE(Image, CreateImage, VkImageCreateInfo)
-DESTROY(Image, DestroyImage)
-CREATE(ImageView, CreateImageView, VkImageViewCreateInfo)
-DESTROY(ImageView, DestroyImageView)
 CREATE(DeviceMemory, AllocateMemory, VkMemoryAllocateInfo)
 DESTROY(DeviceMemory, FreeMemory)
 CREATE(ShaderModule, CreateShaderModule, VkShaderModuleCreateInfo)
@@ -163,8 +159,6 @@ DESTROY(DescriptorPool, DestroyDescriptorPool)
 DESTROY(Pipeline, DestroyPipeline)
 FALLIBLE(BindBufferMemory, (VkDevice device, VkBuffer buffer, VkDeviceMemory memory, VkDeviceSize offset),
          (device, buffer, memory, offset))
-FALLIBLE(BindImageMemory, (VkDevice device, VkImage image, VkDeviceMemory memory, VkDeviceSize offset),
-         (device, image, memory, offset))
 COMMAND(CmdBindPipeline, (VkCommandBuffer cmd, VkPipelineBindPoint point, VkPipeline pipeline), (cmd, point, pipeline))
 COMMAND(CmdBindDescriptorSets,
         (VkCommandBuffer cmd, VkPipelineBindPoint point, VkPipelineLayout layout, uint32_t first, uint32_t count,
@@ -269,10 +263,6 @@ static VKAPI_ATTR VkResult VKAPI_CALL wrap_AllocateDescriptorSets(VkDevice devic
 #define WRAPPED(X)                                                                                                     \
     X(CreateBuffer)                                                                                                    \
     X(DestroyBuffer)                                                                                                   \
-    X(CreateImage)                                                                                                     \
-    X(DestroyImage)                                                                                                    \
-    X(CreateImageView)                                                                                                 \
-    X(DestroyImageView)                                                                                                \
     X(AllocateMemory)                                                                                                  \
     X(FreeMemory)                                                                                                      \
     X(CreateShaderModule)                                                                                              \
@@ -288,7 +278,6 @@ static VKAPI_ATTR VkResult VKAPI_CALL wrap_AllocateDescriptorSets(VkDevice devic
     X(AllocateDescriptorSets)                                                                                          \
     X(UpdateDescriptorSets)                                                                                            \
     X(BindBufferMemory)                                                                                                \
-    X(BindImageMemory)                                                                                                 \
     X(CmdBindPipeline)                                                                                                 \
     X(CmdBindDescriptorSets)                                                                                           \
     X(CmdPushConstants)                                                                                                \

@@ -294,11 +294,12 @@ static unsigned report_without(scene *s, objects *o, scene_inputs *in, unsigned 
 }
 
 /* Passes that read what the pass before them wrote. The layer is blind in one command buffer where the reading pass
- * also writes the same binding, which it takes for two writes by dispatches, and where the writes were atomics alone.
- */
+ * also writes what it reads through the same variable, which it takes for two writes by dispatches, and where the
+ * writes were atomics alone. */
 static bool must_be_seen(const char *after)
 {
-    static const char *const names[] = {"hierarchy_convert", "hierarchy_plan", "hierarchy_widen", "bitmask_evaluate"};
+    static const char *const names[] = {"hierarchy_convert", "hierarchy_reduce", "hierarchy_plan", "hierarchy_widen",
+                                        "bitmask_evaluate"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (!strcmp(after, names[i]))
             return true;
@@ -337,7 +338,7 @@ static void missing_barriers_are_reported(void **state)
     s->g.validation_quiet = false;
     destroy_objects(&o);
     assert_false(overlooked);
-    assert_true(seen >= barriers / 3);
+    assert_true(seen >= barriers / 2);
     assert_true(without_any > 0);
     assert_true(between > 0);
 }

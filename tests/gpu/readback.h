@@ -9,10 +9,10 @@ typedef struct readback {
     uint32_t width, height, layers;
     uint32_t top, join;                  /* levels of the pyramid; the one the wide levels start from */
     uint32_t wide_allocated, wide_built; /* levels */
-    uint32_t wide_width, wide_height;    /* of the image */
-    uint32_t pyramid_offsets[16], pyramid_stride;
+    uint32_t pyramid_offsets[16], wide_offset, wide_texels; /* in a layer's ranges */
+    size_t layer_texels;
     float *fan_depth; /* layer after layer */
-    reference_range *pyramid, *wide;
+    reference_range *ranges;
 } readback;
 
 void readback_create(const lamp *l, readback *out);
