@@ -8,6 +8,7 @@ set(SOFTSHADOW_SHADERS
     classify/classify_tiles
     classify/classify_pixels
     evaluate/bitmask_evaluate
+    evaluate/contour_evaluate
     evaluate/hard_evaluate
     filter/post_filter)
 

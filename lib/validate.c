@@ -97,8 +97,6 @@ softsh_result softshi_check_settings(const softsh_context *context, const softsh
         return INVALID("softsh_settings::struct_size is %u, expected %u", s->struct_size, (unsigned)sizeof *s);
     if ((unsigned)s->technique > SOFTSH_TECHNIQUE_CONTOUR)
         return INVALID("softsh_settings::technique is %d, expected a softsh_technique", (int)s->technique);
-    if (s->technique == SOFTSH_TECHNIQUE_CONTOUR)
-        return UNSUPPORTED("softsh_settings::technique is SOFTSH_TECHNIQUE_CONTOUR, which is not supported yet");
     if ((unsigned)s->pattern > SOFTSH_PATTERN_32X32)
         return INVALID("softsh_settings::pattern is %d, expected a softsh_pattern", (int)s->pattern);
     if ((unsigned)s->primitive > SOFTSH_PRIMITIVE_MICRORECT)

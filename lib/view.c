@@ -71,7 +71,8 @@ static softsh_result create_pipelines(softsh_view *v)
         constants.values[SS_SPEC_LAYERED] = (kind & SOFTSHI_KIND_LAYERED) != 0;
         result = softshi_classify_create(v, kind, &constants);
         if (result == SOFTSH_SUCCESS)
-            result = softshi_bitmask_create(v, kind, &constants);
+            result = settings.technique == SOFTSH_TECHNIQUE_CONTOUR ? softshi_contour_create(v, kind, &constants)
+                                                                    : softshi_bitmask_create(v, kind, &constants);
         constants.values[SS_SPEC_LAYERED] = 1;
         if (result == SOFTSH_SUCCESS && kind == 0)
             result = softshi_hard_create(v, &constants);

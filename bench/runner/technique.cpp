@@ -69,6 +69,7 @@ const std::vector<Name> technique_list = {
     {"average", ON_AVERAGE, TechniqueKind::average, SOFTSH_TECHNIQUE_AUTO},
     {"embree", ON_EMBREE, TechniqueKind::embree, SOFTSH_TECHNIQUE_AUTO},
     {"area", ON_LIBRARY, TechniqueKind::library, SOFTSH_TECHNIQUE_AREA},
+    {"contour", ON_LIBRARY, TechniqueKind::library, SOFTSH_TECHNIQUE_CONTOUR},
     {"bitmask", ON_LIBRARY, TechniqueKind::library, SOFTSH_TECHNIQUE_BITMASK},
     {"auto", ON_AUTO, TechniqueKind::library, SOFTSH_TECHNIQUE_AUTO},
 };

@@ -17,7 +17,7 @@ softsh_settings softshi_settings_resolve(const softsh_settings *settings)
         s.primitive = SOFTSH_PRIMITIVE_MICROQUAD;
     if (s.aggregation == SOFTSH_AGGREGATION_DEFAULT)
         s.aggregation = SOFTSH_AGGREGATION_SAMPLED;
-    if (s.technique == SOFTSH_TECHNIQUE_AREA)
+    if (s.technique != SOFTSH_TECHNIQUE_BITMASK)
         s.filter_passes = 0;
     return s;
 }
@@ -32,11 +32,12 @@ softshi_specialization softshi_settings_specialize(const softsh_settings *s, boo
                                           [SOFTSH_PRIMITIVE_MICROPATCH_UNEXTENDED] = SS_PRIMITIVE_PATCH,
                                           [SOFTSH_PRIMITIVE_MICROQUAD] = SS_PRIMITIVE_QUAD,
                                           [SOFTSH_PRIMITIVE_MICROQUAD_RECTANGLE] = SS_PRIMITIVE_QUAD_RECTANGLE};
-    const bool area = s->technique == SOFTSH_TECHNIQUE_AREA;
+    const bool area = s->technique != SOFTSH_TECHNIQUE_BITMASK;
     softshi_specialization c = {{0}};
     c.values[SS_SPEC_PATTERN_SIDE] = area ? 0 : sides[s->pattern];
     c.values[SS_SPEC_JITTERED] = !area && s->pattern == SOFTSH_PATTERN_16X16_JITTERED;
-    c.values[SS_SPEC_PRIMITIVE] = primitives[s->primitive];
+    c.values[SS_SPEC_PRIMITIVE] =
+        s->technique == SOFTSH_TECHNIQUE_CONTOUR ? SS_PRIMITIVE_CONTOUR : primitives[s->primitive];
     c.values[SS_SPEC_SAMPLED] = s->aggregation == SOFTSH_AGGREGATION_SAMPLED;
     c.values[SS_SPEC_MERGE_MAXIMUM] = s->merge == SOFTSH_MERGE_MAXIMUM;
     c.values[SS_SPEC_AREA] = area || s->filter_passes > 0;
@@ -49,5 +50,7 @@ softshi_specialization softshi_settings_specialize(const softsh_settings *s, boo
 
 bool softshi_settings_need_alignment(const softsh_settings *s)
 {
+    if (s->technique == SOFTSH_TECHNIQUE_CONTOUR)
+        return false;
     return s->primitive == SOFTSH_PRIMITIVE_MICROPATCH || s->primitive == SOFTSH_PRIMITIVE_MICROPATCH_UNEXTENDED;
 }

@@ -11,6 +11,8 @@ void softshi_classify_record(const softshi_visibility *visibility);
 softsh_result softshi_bitmask_create(softsh_view *view, int kind, const softshi_specialization *constants);
 void softshi_bitmask_record(const softshi_visibility *visibility);
 
+softsh_result softshi_contour_create(softsh_view *view, int kind, const softshi_specialization *constants);
+
 softsh_result softshi_post_filter_create(softsh_view *view, const softshi_specialization *constants);
 void softshi_post_filter_record(const softshi_visibility *visibility);
 

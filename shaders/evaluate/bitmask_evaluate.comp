@@ -11,68 +11,11 @@
 #include "ss_receiver.glsl"
 #include "ss_range.glsl"
 #include "ss_kernel.glsl"
+#include "ss_sample.glsl"
 #include "ss_pattern.glsl"
 #include "ss_primitive.glsl"
 
 layout(local_size_x = SS_EVALUATE_GROUP) in;
-
-struct back_projection
-{
-    vec2 uv;       // receiver
-    float g;       // its fan depth, biased
-    float den;     // epsilon - delta g
-    mat2 matrix;   // map offset -> sample coordinates
-    vec2 constant;
-};
-
-back_projection back_project_from(ss_receiver r, float g)
-{
-    const float half_side = 0.5 * float(SS_SIDE);
-    back_projection b;
-    b.uv = r.uv;
-    b.g = g;
-    b.den = occ.light.w - occ.light.z * g;
-    b.matrix = half_side * mat2(occ.a_inverse.x, occ.a_inverse.z, occ.a_inverse.y, occ.a_inverse.w);
-    b.constant = half_side - b.matrix * (occ.light.xy - occ.light.z * r.uv);
-    return b;
-}
-
-vec2 back_project(back_projection b, vec2 uv, float g)
-{
-    return b.matrix * ((uv - b.uv) * (b.den / (g - b.g))) + b.constant;
-}
-
-// The texel whose depth a coarse texel takes; level 0 is its own.
-ivec2 sampled_texel(ivec2 at, uint level)
-{
-    return (at << int(level)) + ((1 << int(level)) >> 1);
-}
-
-vec2 sample_place(ivec2 at, uint level)
-{
-    if (SS_SAMPLED)
-        return vec2(min(sampled_texel(at, level), ivec2(occ.size.xy) - 1)) + 0.5;
-    return (vec2(at) + 0.5) * float(1u << level);
-}
-
-float sample_depth(uint layer, ivec2 at, uint level)
-{
-    if (SS_SAMPLED)
-        return ss_load_fan_depth(layer, sampled_texel(at, level));
-    if (level == 0u)
-        return ss_load_fan_depth(layer, at);
-    return ss_load_pyramid(layer, level, at).y;
-}
-
-bool occludes(float g, vec2 at, back_projection b, ss_receiver r, float band)
-{
-    // Over the plane through the biased receiver: blocks of nearest depths lift the surface and the receiver alike.
-    const vec2 away = at - r.uv;
-    const float height = g - (b.g - r.eta + dot(r.gradient, away)), noise = r.drift * (abs(away.x) + abs(away.y));
-    const bool nearer = g > b.g, before_light = occ.light.w - occ.light.z * g > 0.0;
-    const bool off_plane = ss_is_off_plane(r, height, band + noise);
-    return nearer && before_light && off_plane;
-}
 
 struct vertex
 {
@@ -80,14 +23,14 @@ struct vertex
     bool occludes;
 };
 
-vertex load_vertex(uint layer, ivec2 at, uint level, back_projection b, ss_receiver r, float band)
+vertex load_vertex(uint layer, ivec2 at, uint level, ss_back_projection b, ss_receiver r, float band)
 {
-    const float g = sample_depth(layer, at, level);
-    const vec2 place = sample_place(at, level);
-    return vertex(back_project(b, place, g), occludes(g, place, b, r, band));
+    const float g = ss_sample_depth(layer, at, level);
+    const vec2 place = ss_sample_place(at, level);
+    return vertex(ss_back_project(b, place, g), ss_occludes(g, place, b, r, band));
 }
 
-void add_quads(uint layer, ss_samples s, back_projection b, ss_receiver r, float band)
+void add_quads(uint layer, ss_samples s, ss_back_projection b, ss_receiver r, float band)
 {
     const ivec2 up = ivec2(0, 1);
     for (int y = s.lo.y; y < s.hi.y; y++) {
@@ -110,16 +53,16 @@ struct micropatch
     bool occludes;
 };
 
-micropatch load_patch(uint layer, ivec2 at, uint level, back_projection b, ss_receiver r, float band)
+micropatch load_patch(uint layer, ivec2 at, uint level, ss_back_projection b, ss_receiver r, float band)
 {
-    const float g = sample_depth(layer, at, level);
-    const vec2 place = sample_place(at, level);
+    const float g = ss_sample_depth(layer, at, level);
+    const vec2 place = ss_sample_place(at, level);
     const vec2 scale = vec2(b.matrix[0].x, b.matrix[1].y) * (b.den / (g - b.g));
     const vec2 middle = scale * (place - b.uv) + b.constant, half_size = scale * (0.5 * float(1u << level));
-    return micropatch(middle - half_size, middle + half_size, occludes(g, place, b, r, band));
+    return micropatch(middle - half_size, middle + half_size, ss_occludes(g, place, b, r, band));
 }
 
-void add_patches(uint layer, ss_samples s, back_projection b, ss_receiver r, float band)
+void add_patches(uint layer, ss_samples s, ss_back_projection b, ss_receiver r, float band)
 {
     const bool extended = SS_PRIMITIVE == SS_PRIMITIVE_PATCH_EXTENDED;
     for (int y = s.lo.y; y <= s.hi.y; y++) {
@@ -154,8 +97,9 @@ void main()
 
     const ss_receiver r = ss_load_receiver(pixel);
     const ss_samples samples = ss_receiver_samples(r, g_hi);
+    const float half_side = 0.5 * float(SS_SIDE);
     float band;
-    const back_projection b = back_project_from(r, ss_biased(r, samples.level, band));
+    const ss_back_projection b = ss_back_project_from(r, ss_biased(r, samples.level, band), half_side, half_side);
     const bool disc = (ss_flags & SS_FLAG_DISC) != 0u;
     float mask_occlusion = 0.0, area_occlusion = 0.0;
     ss_mask_clear();

@@ -69,6 +69,7 @@ typedef struct ss_ivec4 {
 #define SS_PRIMITIVE_PATCH_EXTENDED 1
 #define SS_PRIMITIVE_QUAD 2
 #define SS_PRIMITIVE_QUAD_RECTANGLE 3
+#define SS_PRIMITIVE_CONTOUR 4
 
 #define SS_TILE_X 8 /* pixels of a tile */
 #define SS_TILE_Y 8

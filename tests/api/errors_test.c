@@ -251,7 +251,6 @@ static void view_errors(void **state)
     BAD(VIEW, in.settings.struct_size = 0, INVALID, "softsh_settings::struct_size");
     BAD(VIEW, in.settings.technique = (softsh_technique)4, INVALID, "softsh_settings::technique");
     BAD(VIEW, in.settings.technique = (softsh_technique)-1, INVALID, "softsh_settings::technique");
-    BAD(VIEW, in.settings.technique = SOFTSH_TECHNIQUE_CONTOUR, UNSUPPORTED, "softsh_settings::technique");
     BAD(VIEW, in.settings.pattern = (softsh_pattern)5, INVALID, "softsh_settings::pattern");
     BAD(VIEW, in.settings.primitive = (softsh_primitive)6, INVALID, "softsh_settings::primitive");
     BAD(VIEW, in.settings.primitive = SOFTSH_PRIMITIVE_MICRORECT, UNSUPPORTED, "softsh_settings::primitive");

@@ -1,0 +1,65 @@
+// Map samples of a level: where they lie, how deep, whether they occlude a receiver, and where on the light they land.
+// docs/numerics.md, sections 2, 3 and 5.
+// Needs the kernel.
+#ifndef SS_SAMPLE_GLSL
+#define SS_SAMPLE_GLSL
+
+struct ss_back_projection
+{
+    vec2 uv;       // receiver
+    float g;       // its fan depth, biased
+    float den;     // epsilon - delta g
+    mat2 matrix;   // map offset -> sample coordinates
+    vec2 constant;
+};
+
+// To `middle` +- `half_side` across the light.
+ss_back_projection ss_back_project_from(ss_receiver r, float g, float middle, float half_side)
+{
+    ss_back_projection b;
+    b.uv = r.uv;
+    b.g = g;
+    b.den = occ.light.w - occ.light.z * g;
+    b.matrix = half_side * mat2(occ.a_inverse.x, occ.a_inverse.z, occ.a_inverse.y, occ.a_inverse.w);
+    b.constant = middle - b.matrix * (occ.light.xy - occ.light.z * r.uv);
+    return b;
+}
+
+vec2 ss_back_project(ss_back_projection b, vec2 uv, float g)
+{
+    return b.matrix * ((uv - b.uv) * (b.den / (g - b.g))) + b.constant;
+}
+
+// The texel whose depth a coarse texel takes; level 0 is its own.
+ivec2 ss_sampled_texel(ivec2 at, uint level)
+{
+    return (at << int(level)) + ((1 << int(level)) >> 1);
+}
+
+vec2 ss_sample_place(ivec2 at, uint level)
+{
+    if (SS_SAMPLED)
+        return vec2(min(ss_sampled_texel(at, level), ivec2(occ.size.xy) - 1)) + 0.5;
+    return (vec2(at) + 0.5) * float(1u << level);
+}
+
+float ss_sample_depth(uint layer, ivec2 at, uint level)
+{
+    if (SS_SAMPLED)
+        return ss_load_fan_depth(layer, ss_sampled_texel(at, level));
+    if (level == 0u)
+        return ss_load_fan_depth(layer, at);
+    return ss_load_pyramid(layer, level, at).y;
+}
+
+bool ss_occludes(float g, vec2 at, ss_back_projection b, ss_receiver r, float band)
+{
+    // Over the plane through the biased receiver: blocks of nearest depths lift the surface and the receiver alike.
+    const vec2 away = at - r.uv;
+    const float height = g - (b.g - r.eta + dot(r.gradient, away)), noise = r.drift * (abs(away.x) + abs(away.y));
+    const bool nearer = g > b.g, before_light = occ.light.w - occ.light.z * g > 0.0;
+    const bool off_plane = ss_is_off_plane(r, height, band + noise);
+    return nearer && before_light && off_plane;
+}
+
+#endif
