@@ -1,5 +1,5 @@
-/* Contours by marching squares, integrated on the light (Guennebaud et al. 2007; Yang et al. 2009): another pipeline for
- * the evaluation pass. */
+/* Contours by marching squares, integrated on the light (Guennebaud et al. 2007; Yang et al. 2009): another pipeline
+ * for the evaluation pass. */
 #include "techniques.h"
 
 softsh_result softshi_contour_create(softsh_view *view, int kind, const softshi_specialization *constants)

@@ -122,7 +122,8 @@ void main()
     float occlusion = 0.0;
     uint edges = 0u;
     for (uint layer = 0u; layer < ss_layers(); layer++) {
-        const float area = clamp(orientation * layer_area(layer, samples, b, r, band, edges), 0.0, 1.0);
+        const float signed_area = orientation * layer_area(layer, samples, b, r, band, edges);
+        const float area = signed_area > 0.0 ? min(signed_area, 1.0) : 0.0; // not a number is nothing
         occlusion = SS_MERGE_MAXIMUM ? max(occlusion, area) : min(occlusion + area, 1.0);
     }
     ss_write_visibility(pixel, 1.0 - occlusion);

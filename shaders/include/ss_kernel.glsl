@@ -5,6 +5,7 @@
 
 const bool SS_IS_CONTOUR = SS_PRIMITIVE == SS_PRIMITIVE_CONTOUR;
 const bool SS_IS_PATCH = SS_PRIMITIVE == SS_PRIMITIVE_PATCH || SS_PRIMITIVE == SS_PRIMITIVE_PATCH_EXTENDED;
+const bool SS_IS_FLAT = SS_IS_PATCH || SS_IS_CONTOUR; // where the surface rises through it
 
 // Occluders at or beyond the light do not count: the fan depth of the light's plane bounds them.
 float ss_clip_to_light(float g)
@@ -27,7 +28,7 @@ struct ss_samples
 {
     uint level;
     ivec2 lo, hi;       // samples, inclusive, clipped to the level
-    ivec2 texel_lo, texel_hi; // the texels that those stand for which can hide any of the light
+    ivec2 texel_lo, texel_hi; // the texels they stand for
     bool covered;       // nothing was clipped
     bool clamped;       // the budget made the level coarser
 };
@@ -39,10 +40,11 @@ ivec2 ss_floor(vec2 x)
 }
 
 // Samples a side that one invocation may look at without a budget. A bound for the loops: drivers stop shaders that run too
-// long, the software driver silently after 65,535 rounds of all loops together; a quad takes two.
+// long, the software driver silently after 65,535 rounds of all loops together; a quad takes two, a contour's sample one and
+// its cell up to two.
 uint ss_most_samples()
 {
-    return uint((SS_IS_PATCH ? 240.0 : 160.0) * inversesqrt(float(ss_layers())));
+    return uint((SS_IS_PATCH ? 240.0 : SS_IS_CONTOUR ? 128.0 : 160.0) * inversesqrt(float(ss_layers())));
 }
 
 uint ss_extent_level(int extent)
@@ -75,15 +77,14 @@ ss_samples ss_kernel_samples(vec4 box)
     s.covered = all(greaterThanEqual(lo, ivec2(0))) && all(lessThanEqual(hi, top));
     s.lo = clamp(lo, ivec2(0), top);
     s.hi = clamp(hi, ivec2(0), top);
-    // Around a contour's samples lies a rim of others that only say where it goes beside the light.
-    s.texel_lo = clamp(SS_IS_CONTOUR ? ss_floor(a + 0.5) : lo, ivec2(0), top) << int(s.level);
-    s.texel_hi = min(((clamp(SS_IS_CONTOUR ? ss_floor(b + 0.5) : hi, ivec2(0), top) + 1) << int(s.level)) - 1, limit);
+    s.texel_lo = s.lo << int(s.level);
+    s.texel_hi = min(((s.hi + 1) << int(s.level)) - 1, limit);
     return s;
 }
 
 // Half the thickness of the band around the receiver's plane that counts as the receiver's own surface, in texels' rise. A
 // patch is flat where the surface rises through it; a quad's vertices lie on the surface, up to noise.
-const float SS_BAND = SS_IS_PATCH || SS_IS_CONTOUR ? 0.5 : 0.05;
+const float SS_BAND = SS_IS_FLAT ? 0.5 : 0.05;
 
 const float SS_NO_BAND = -3e38;
 
@@ -92,7 +93,7 @@ float ss_biased(ss_receiver r, uint level, out float band)
 {
     const float slope = abs(r.gradient.x) + abs(r.gradient.y), t = float(1u << level);
     // The nearest depth of a block lifts the whole plane by as much as it rises from the block's centre.
-    const float lift = SS_IS_PATCH || SS_SAMPLED ? 0.0 : 0.5 * slope * (t - 1.0);
+    const float lift = SS_IS_FLAT || SS_SAMPLED ? 0.0 : 0.5 * slope * (t - 1.0);
     const bool overridden = (ss_flags & SS_FLAG_OVERRIDE_BIAS) != 0u;
     band = overridden ? SS_NO_BAND : r.eta + SS_BAND * slope * t;
     return overridden ? ss_shifted(r.g) : r.g + r.eta + lift;
@@ -108,18 +109,6 @@ bool ss_is_off_plane(ss_receiver r, float height, float band)
 ss_samples ss_receiver_samples(ss_receiver r, float g_hi)
 {
     return ss_kernel_samples(ss_kernel_box(r.uv, r.uv, r.g, occ.light.w - occ.light.z * r.g, g_hi));
-}
-
-// Whether all samples occlude, given that those do which can hide any of the light: nearer than `least` in one layer. The rim
-// is looked at only where that is so, by a loop, because the software driver runs both sides of a branch.
-bool ss_rim_occludes(ss_samples s, bool others_do, float least)
-{
-    const ivec2 lo = s.lo << int(s.level), hi = min(((s.hi + 1) << int(s.level)) - 1, ivec2(occ.size.xy) - 1);
-    const uint layers = SS_IS_CONTOUR && others_do ? ss_layers() : 0u;
-    float farthest = -3e38;
-    for (uint layer = 0u; layer < layers; layer++)
-        farthest = max(farthest, ss_range_pyramid(layer, lo, hi).x);
-    return others_do && (!SS_IS_CONTOUR || farthest > least);
 }
 
 struct ss_kernel
@@ -160,13 +149,9 @@ ss_kernel ss_find_kernel(ss_receiver r, float g_hi)
         const vec2 reach = max(abs(vec2(k.samples.texel_lo & ~1) + 0.5 - r.uv), abs(vec2(k.samples.texel_hi | 1) + 0.5 - r.uv));
         const float rise = dot(abs(r.gradient), reach);
         const ivec2 size = k.samples.texel_hi - k.samples.texel_lo;
-        const float least = g + max(rise + band, 0.0);
-        const bool dark = ss_rim_occludes(
-            k.samples, k.samples.covered && range.x > least && occ.light.z * range.y < occ.light.w,
-            least + (abs(r.gradient.x) + abs(r.gradient.y)) * float(1u << k.samples.level));
         if (!(range.y > g))
             k.state = SS_STATE_LIT;
-        else if (dark)
+        else if (k.samples.covered && range.x > g + max(rise + band, 0.0) && occ.light.z * range.y < occ.light.w)
             k.state = SS_STATE_UMBRA;
         else if (max(size.x, size.y) <= 2 && (ss_flags & SS_FLAG_OVERRIDE_BIAS) == 0u &&
                  !(range.y > g + rise + ss_slack(r.g)))

@@ -139,21 +139,11 @@ void reference_contour_free(reference_contour *contour)
     memset(contour, 0, sizeof(*contour));
 }
 
-/* A vertex lies at its occluder's depth, half the way to the neighbour. */
+/* Half a spacing from the occluder's place towards the neighbour, at the occluder's depth. */
 static void vertex_place(const reference_dual_grid *grid, const reference_contour_vertex *vertex, double place[3])
 {
-    const int32_t x = vertex->x + (vertex->side == 0) - (vertex->side == 2);
-    const int32_t y = vertex->y + (vertex->side == 1) - (vertex->side == 3);
-    const double *const occluder = reference_dual_grid_place(grid, vertex->x, vertex->y);
-    memcpy(place, occluder, 3 * sizeof(*place));
-    if (x >= 0 && y >= 0 && x < (int32_t)grid->columns && y < (int32_t)grid->rows) {
-        const double *const neighbour = reference_dual_grid_place(grid, x, y);
-        for (int axis = 0; axis < 2; ++axis)
-            place[axis] = 0.5 * (occluder[axis] + neighbour[axis]);
-    } else {
-        place[0] += 0.5 * grid->spacing * (x - vertex->x);
-        place[1] += 0.5 * grid->spacing * (y - vertex->y);
-    }
+    memcpy(place, reference_dual_grid_place(grid, vertex->x, vertex->y), 3 * sizeof(*place));
+    place[vertex->side % 2] += (vertex->side < 2 ? 0.5 : -0.5) * grid->spacing;
 }
 
 void reference_contour_occlusion(const reference_dual_grid *grid, const reference_map *map,
@@ -204,5 +194,31 @@ bool reference_contour_packet(const reference_dual_grid *grid, const reference_m
         *walk = visited;
     if (diverged)
         *diverged = !together;
+    return success;
+}
+
+bool reference_contour_visibility(const reference_dual_grid *grids, uint32_t layer_count, const reference_map *map,
+                                  const reference_settings *settings, const reference_receiver *receiver,
+                                  double *visibility)
+{
+    reference_contour contour = {0};
+    reference_settings flat = *settings;
+    double occlusion = 0.0;
+    bool success = true;
+    *visibility = receiver->state == REFERENCE_RECEIVER_AWAY ? 0.0 : 1.0;
+    if (receiver->state != REFERENCE_RECEIVER_ACTIVE)
+        return true;
+    flat.primitive = SOFTSH_PRIMITIVE_MICROPATCH; /* the band around the receiver's plane */
+    for (uint32_t i = 0; i < layer_count && success; ++i) {
+        const reference_rect all = {0, 0, (int32_t)grids[i].columns - 1, (int32_t)grids[i].rows - 1};
+        reference_occlusion layer;
+        success =
+            reference_contour_extract(&grids[i], map, &flat, receiver, 1, all, REFERENCE_EXTRACT_WALK, NULL, &contour);
+        reference_contour_occlusion(&grids[i], map, &flat, receiver, &contour, &layer);
+        const double area = fmin(fmax(layer.area, 0.0), 1.0);
+        occlusion = settings->merge == SOFTSH_MERGE_MAXIMUM ? fmax(occlusion, area) : fmin(occlusion + area, 1.0);
+    }
+    reference_contour_free(&contour);
+    *visibility = 1.0 - occlusion;
     return success;
 }
