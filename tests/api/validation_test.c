@@ -22,7 +22,9 @@ static void settings_are_silent(void **state)
         scene_inputs in;
         const scene_lamp lamp = i % LAMP_COUNT;
         scene_fill(s, lamp, 1 + i % SCENE_LAYERS, &in);
-        in.settings.technique = i % 3 == 0 ? SOFTSH_TECHNIQUE_AREA : SOFTSH_TECHNIQUE_BITMASK;
+        in.settings.technique = i % 5 == 2   ? SOFTSH_TECHNIQUE_CONTOUR
+                                : i % 3 == 0 ? SOFTSH_TECHNIQUE_AREA
+                                             : SOFTSH_TECHNIQUE_BITMASK;
         in.settings.pattern = i % 5;
         in.settings.primitive = i % SOFTSH_PRIMITIVE_MICRORECT;
         in.settings.aggregation = i % 3;

@@ -168,6 +168,12 @@ static void visibilities_are_numbers(void **state)
          .budget = 7},
         {.technique = SOFTSH_TECHNIQUE_BITMASK, .no_hierarchy = 1},
         {.technique = SOFTSH_TECHNIQUE_AREA, .primitive = SOFTSH_PRIMITIVE_MICROQUAD, .min_level = 3},
+        {.technique = SOFTSH_TECHNIQUE_CONTOUR},
+        {.technique = SOFTSH_TECHNIQUE_CONTOUR,
+         .aggregation = SOFTSH_AGGREGATION_NEAREST,
+         .merge = SOFTSH_MERGE_MAXIMUM,
+         .budget = 5,
+         .no_hierarchy = 1},
     };
     static attack a;
     static float visibility[LARGEST * LARGEST];

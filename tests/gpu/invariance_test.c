@@ -1,5 +1,5 @@
 /* What must not matter: depth conventions and formats, the near plane, the map's resolution, units, where the world's
- * origin is; and planes, which do not shadow themselves. */
+ * origin is, which texels are which; and planes, which do not shadow themselves. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,10 +13,18 @@
 enum { WIDTH = 64, HEIGHT = 48, PIXELS = WIDTH * HEIGHT };
 enum { PLANE_WIDTH = 30, PLANE_HEIGHT = 22, PLANE_PIXELS = PLANE_WIDTH * PLANE_HEIGHT };
 
-/* The views in use, without and with normals. */
-static sight views[2];
+/* What a test is run with; its state. */
+typedef struct subject {
+    const char *name;
+    softsh_technique technique;
+    sight views[2]; /* without and with normals */
+} subject;
 
-static void look(const scene *s, bool normals, float *visibility)
+static subject subjects[] = {{.name = "bitmask", .technique = SOFTSH_TECHNIQUE_BITMASK},
+                             {.name = "contour", .technique = SOFTSH_TECHNIQUE_CONTOUR}};
+enum { SUBJECTS = sizeof subjects / sizeof subjects[0] };
+
+static void look(subject *with, const scene *s, bool normals, float *visibility)
 {
     eye_info info = s->eye;
     lamp l;
@@ -25,7 +33,7 @@ static void look(const scene *s, bool normals, float *visibility)
         info.normals = NULL;
     lamp_create(&s->lamp, &l);
     eye_create(&info, &e);
-    sight_run(&views[normals], &l, &e, NULL, visibility, NULL);
+    sight_run(&with->views[normals], &l, &e, NULL, visibility, NULL);
     eye_destroy(&e);
     lamp_destroy(&l);
 }
@@ -76,10 +84,10 @@ static const VkFormat formats[] = {VK_FORMAT_D32_SFLOAT, VK_FORMAT_X8_D24_UNORM_
 
 static void depth_conventions(void **state)
 {
+    subject *const with = *state;
     static const char *const ranges[] = {"normal", "reversed", "infinite", "reversed infinite"};
     static const char *const names[] = {"D32", "D24", "D24S8", "D32S8", "D16"};
     static float plain[2][PIXELS], other[PIXELS];
-    (void)state;
     for (int light = 0; light < SCENE_LIGHT_COUNT; light++) {
         for (int range = 0; range < 4; range++) {
             scene_info info = info_of((scene_light)light);
@@ -88,8 +96,8 @@ static void depth_conventions(void **state)
             info.range = (reference_depth_range)range;
             scene_create(&info, &s);
             for (int normals = 0; normals < 2; normals++) {
-                look(&s, normals != 0, range ? other : plain[normals]);
-                snprintf(what, sizeof what, "%s, %s%s", scene_light_name(info.light), ranges[range],
+                look(with, &s, normals != 0, range ? other : plain[normals]);
+                snprintf(what, sizeof what, "%s, %s, %s%s", with->name, scene_light_name(info.light), ranges[range],
                          normals ? ", normals" : "");
                 if (range)
                     near_enough(what, other, plain[normals], 5e-4, 0.002);
@@ -103,8 +111,9 @@ static void depth_conventions(void **state)
                 s.lamp.layers[0].format = formats[k];
                 s.eye.format = formats[k];
                 /* Neighbours' differences drown in 16 bits: normals. */
-                look(&s, coarse, other);
-                snprintf(what, sizeof what, "%s, %s, %s", scene_light_name(info.light), ranges[range], names[k]);
+                look(with, &s, coarse, other);
+                snprintf(what, sizeof what, "%s, %s, %s, %s", with->name, scene_light_name(info.light), ranges[range],
+                         names[k]);
                 near_enough(what, other, plain[coarse], coarse ? 0.004 : 5e-4, coarse ? 0.03 : 0.003);
             }
             scene_destroy(&s);
@@ -115,9 +124,9 @@ static void depth_conventions(void **state)
 /* Light and camera of info_of, with other matrices. */
 static void near_plane(void **state)
 {
+    subject *const with = *state;
     static const double planes[] = {0.01, 0.5, 3.0};
     static float images[3][PIXELS];
-    (void)state;
     for (int k = 0; k < 3; k++) {
         const scene_info info = info_of(SCENE_CENTRED);
         scene s;
@@ -132,7 +141,7 @@ static void near_plane(void **state)
         const reference_surface surfaces[2] = {{.center = {0, 0, -10}, .u = {7, 0, 0.4}, .v = {0, 7, -0.3}},
                                                {.center = {-0.6, 0.4, -6}, .u = {1.3, 0.4, 0}, .v = {-0.3, 0.9, 0}}};
         scene_cast(&s, surfaces, 2);
-        look(&s, true, images[k]);
+        look(with, &s, true, images[k]);
         scene_destroy(&s);
     }
     shadows_are_there(images[1]);
@@ -142,7 +151,7 @@ static void near_plane(void **state)
 
 /* A half plane 5 below a light of width 1, over a floor at 10, seen from between the two: the penumbra on the floor is
  * linear and 1 wide. `unit` scales everything, `origin` moves it. */
-static void edge(uint32_t map_size, double unit, const double origin[3], float *visibility)
+static void edge(subject *with, uint32_t map_size, double unit, const double origin[3], float *visibility)
 {
     const double up[3] = {0, 1, 0};
     const reference_surface surfaces[2] = {
@@ -168,7 +177,7 @@ static void edge(uint32_t map_size, double unit, const double origin[3], float *
     reference_look_at(at, below, up, s.eye.view);
     reference_orthographic(box, 0.1 * unit, 10 * unit, REFERENCE_DEPTH_NORMAL, s.eye.projection);
     scene_cast(&s, surfaces, 2);
-    look(&s, false, visibility);
+    look(with, &s, false, visibility);
     scene_destroy(&s);
 }
 
@@ -190,12 +199,12 @@ static const double nowhere[3] = {0, 0, 0};
  * on the floor. */
 static void resolution(void **state)
 {
+    subject *const with = *state;
     static float image[PIXELS];
-    (void)state;
     for (uint32_t size = 32; size <= 256; size *= 2) {
         const double texel = 2.0 * 5.0 / size;
         double widest = 0.0, narrowest = 10.0, farthest = 0.0;
-        edge(size, 1.0, nowhere, image);
+        edge(with, size, 1.0, nowhere, image);
         for (uint32_t y = 0; y < HEIGHT; y++) {
             const double from = crossing(image + y * WIDTH, 0.1), to = crossing(image + y * WIDTH, 0.9);
             widest = fmax(widest, (to - from) / 0.8);
@@ -212,14 +221,14 @@ static void resolution(void **state)
 
 static void units(void **state)
 {
+    subject *const with = *state;
     static float plain[PIXELS], other[PIXELS];
     static const double scales[] = {1e-3, 1000.0, 1e6};
     char what[80];
-    (void)state;
-    edge(100, 1.0, nowhere, plain);
+    edge(with, 100, 1.0, nowhere, plain);
     shadows_are_there(plain);
     for (size_t k = 0; k < sizeof scales / sizeof scales[0]; k++) {
-        edge(100, scales[k], nowhere, other);
+        edge(with, 100, scales[k], nowhere, other);
         snprintf(what, sizeof what, "units of %g", scales[k]);
         near_enough(what, other, plain, 5e-4, 0.002);
     }
@@ -227,16 +236,89 @@ static void units(void **state)
 
 static void world_offsets(void **state)
 {
+    subject *const with = *state;
     static float plain[PIXELS], other[PIXELS];
     static const double places[][3] = {{1e6, 0, 0}, {-1e6, 1e6, 1e6}, {1e7, -1e7, 3e6}};
     char what[80];
-    (void)state;
-    edge(100, 1.0, nowhere, plain);
+    edge(with, 100, 1.0, nowhere, plain);
     for (size_t k = 0; k < sizeof places / sizeof places[0]; k++) {
-        edge(100, 1.0, places[k], other);
+        edge(with, 100, 1.0, places[k], other);
         snprintf(what, sizeof what, "at (%g, %g, %g)", places[k][0], places[k][1], places[k][2]);
         near_enough(what, other, plain, 5e-4, 0.002);
     }
+}
+
+/* A level square and a slanted one over a floor, under a map that is turned by `turns` right angles and moved by whole
+ * texels, and by the same points of the world: only texels' numbers change. */
+static void same_texels(subject *with, int turns, const int moved[2], bool sun, float *visibility)
+{
+    static const double ups[4][3] = {{0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {1, 0, 0}};
+    const double camera_at[3] = {3, -4, -3}, seen[3] = {0.2, 0.1, -9}, upright[3] = {0, 0, 1};
+    const reference_surface surfaces[3] = {{.center = {0, 0, -10}, .u = {9, 0, 0.5}, .v = {0, 9, -0.4}},
+                                           {.center = {-0.7, 0.5, -7}, .u = {1.1, 0.3, 0}, .v = {-0.2, 0.8, 0}},
+                                           {.center = {0.9, -0.4, -6}, .u = {0.5, 0.2, 0.3}, .v = {-0.3, 0.6, -0.2}}};
+    const int size = 96;
+    const double half = sun ? 5.0 : 0.5, texel = 2.0 * half / size;
+    const double bounds[4] = {-half + texel * moved[0], half + texel * moved[0], -half + texel * moved[1],
+                              half + texel * moved[1]};
+    scene s;
+    memset(&s, 0, sizeof s);
+    s.lamp.light.struct_size = sizeof s.lamp.light;
+    s.lamp.place = (placement){.width = (uint32_t)size, .height = (uint32_t)size};
+    s.lamp.layer_count = 1;
+    s.eye.place = (placement){.width = WIDTH, .height = HEIGHT};
+    reference_look_at(nowhere, surfaces[0].center, ups[turns], s.lamp.view);
+    if (sun) {
+        s.lamp.light.shape = SOFTSH_LIGHT_DIRECTIONAL;
+        s.lamp.light.direction[0] = 0.2;
+        s.lamp.light.direction[2] = -1.0;
+        s.lamp.light.angular_radius = 0.1;
+        reference_orthographic(bounds, 0.5, 30.0, REFERENCE_DEPTH_NORMAL, s.lamp.layers[0].projection);
+    } else {
+        s.lamp.light.half_u[0] = 0.5;
+        s.lamp.light.half_u[1] = 0.1;
+        s.lamp.light.half_v[0] = -0.06;
+        s.lamp.light.half_v[1] = 0.3;
+        reference_perspective(bounds, 1.0, 30.0, REFERENCE_DEPTH_REVERSED, s.lamp.layers[0].projection);
+    }
+    reference_look_at(camera_at, seen, upright, s.eye.view);
+    reference_perspective((const double[4]){-0.4, 0.4, -0.3, 0.3}, 1.0, 60.0, REFERENCE_DEPTH_REVERSED,
+                          s.eye.projection);
+    scene_cast(&s, surfaces, 3);
+    look(with, &s, true, visibility);
+    scene_destroy(&s);
+}
+
+static void maps_shifted_by_texels(void **state)
+{
+    static const int shifts[][2] = {{1, 0}, {0, -1}, {3, 2}, {-4, 5}};
+    static float plain[PIXELS], other[PIXELS];
+    subject *const with = *state;
+    for (int sun = 0; sun < 2; sun++) {
+        same_texels(with, 0, (const int[2]){0, 0}, sun != 0, plain);
+        shadows_are_there(plain);
+        for (size_t k = 0; k < sizeof shifts / sizeof shifts[0]; k++) {
+            char what[80];
+            same_texels(with, 0, shifts[k], sun != 0, other);
+            snprintf(what, sizeof what, "%s, moved by %d, %d%s", with->name, shifts[k][0], shifts[k][1],
+                     sun ? ", sun" : "");
+            near_enough(what, other, plain, 1e-5, 0.0);
+        }
+    }
+}
+
+static void maps_turned_by_right_angles(void **state)
+{
+    static float plain[PIXELS], other[PIXELS];
+    subject *const with = *state;
+    for (int sun = 0; sun < 2; sun++)
+        for (int turns = 0; turns < 4; turns++) {
+            char what[80];
+            same_texels(with, turns, (const int[2]){0, 0}, sun != 0, turns ? other : plain);
+            snprintf(what, sizeof what, "%s, turned by %d right angles%s", with->name, turns, sun ? ", sun" : "");
+            if (turns)
+                near_enough(what, other, plain, 1e-5, 0.0);
+        }
 }
 
 /* A plane 6 from the light, `degrees` from facing it, seen along its normal or (`grazing`) across it, all of the light
@@ -335,19 +417,23 @@ static uint32_t look_at_planes(sight mine[2], uint32_t turn, const char *setting
     return dark;
 }
 
-/* All primitives, aggregations and levels, bitmask and area, with and without hierarchy, normals, and 16 bits of depth
- * in the map. */
+/* All primitives, aggregations and levels, bitmask, area and contours, with and without hierarchy, normals, and 16 bits
+ * of depth in the map. */
 static void planes_do_not_shadow_themselves(void **state)
 {
     uint32_t dark = 0, turn = 0;
     (void)state;
-    for (uint32_t mode = 0; mode < 12; mode++) {
-        const bool area = mode >= 8, nearest = mode / 4 % 2;
+    for (uint32_t mode = 0; mode < 14; mode++) {
+        const bool area = mode >= 8 && mode < 12, contour = mode >= 12;
+        const bool nearest = contour ? mode % 2 != 0 : mode / 4 % 2 != 0;
+        const softsh_technique technique = contour ? SOFTSH_TECHNIQUE_CONTOUR
+                                           : area  ? SOFTSH_TECHNIQUE_AREA
+                                                   : SOFTSH_TECHNIQUE_BITMASK;
         sight mine[2];
         for (int normals = 0; normals < 2; normals++) {
             const sight_info info = {
-                .settings = {.technique = area ? SOFTSH_TECHNIQUE_AREA : SOFTSH_TECHNIQUE_BITMASK,
-                             .primitive = (softsh_primitive)(1 + mode % 4),
+                .settings = {.technique = technique,
+                             .primitive = (softsh_primitive)(contour ? 0 : 1 + mode % 4),
                              .aggregation = nearest ? SOFTSH_AGGREGATION_NEAREST : SOFTSH_AGGREGATION_SAMPLED,
                              .no_hierarchy = mode % 3 == 0},
                 .width = PLANE_WIDTH,
@@ -359,8 +445,8 @@ static void planes_do_not_shadow_themselves(void **state)
             char settings[80];
             sight_set_level(&mine[0], level);
             sight_set_level(&mine[1], level);
-            snprintf(settings, sizeof settings, "%s, primitive %u, %s, level %u", area ? "area" : "bitmask",
-                     1 + mode % 4, nearest ? "nearest" : "sampled", level);
+            snprintf(settings, sizeof settings, "technique %d, primitive %u, %s, level %u", (int)technique,
+                     contour ? 0 : 1 + mode % 4, nearest ? "nearest" : "sampled", level);
             dark += look_at_planes(mine, turn, settings);
             dark += look_at_planes(mine, turn + 1, settings);
         }
@@ -373,29 +459,41 @@ static void planes_do_not_shadow_themselves(void **state)
 static int setup(void **state)
 {
     const int failed = fixture_setup(state);
-    for (int normals = 0; normals < 2 && !failed; normals++) {
-        const sight_info info = {.settings = {.technique = SOFTSH_TECHNIQUE_BITMASK},
+    for (int k = 0; k < 2 * SUBJECTS && !failed; k++) {
+        const sight_info info = {.settings = {.technique = subjects[k / 2].technique},
                                  .width = WIDTH,
                                  .height = HEIGHT,
-                                 .normals = normals != 0};
-        sight_create(&info, &views[normals]);
+                                 .normals = k % 2 != 0};
+        sight_create(&info, &subjects[k / 2].views[k % 2]);
     }
     return failed;
 }
 
 static int teardown(void **state)
 {
-    sight_destroy(&views[0]);
-    sight_destroy(&views[1]);
+    for (int k = 0; k < 2 * SUBJECTS; k++)
+        sight_destroy(&subjects[k / 2].views[k % 2]);
     return fixture_teardown(state);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(depth_conventions), cmocka_unit_test(near_plane),
-        cmocka_unit_test(resolution),        cmocka_unit_test(units),
-        cmocka_unit_test(world_offsets),     cmocka_unit_test(planes_do_not_shadow_themselves),
+        cmocka_unit_test_prestate(depth_conventions, &subjects[0]),
+        cmocka_unit_test_prestate(depth_conventions, &subjects[1]),
+        cmocka_unit_test_prestate(near_plane, &subjects[0]),
+        cmocka_unit_test_prestate(near_plane, &subjects[1]),
+        cmocka_unit_test_prestate(resolution, &subjects[0]),
+        cmocka_unit_test_prestate(resolution, &subjects[1]),
+        cmocka_unit_test_prestate(units, &subjects[0]),
+        cmocka_unit_test_prestate(units, &subjects[1]),
+        cmocka_unit_test_prestate(world_offsets, &subjects[0]),
+        cmocka_unit_test_prestate(world_offsets, &subjects[1]),
+        cmocka_unit_test_prestate(maps_shifted_by_texels, &subjects[0]),
+        cmocka_unit_test_prestate(maps_shifted_by_texels, &subjects[1]),
+        /* Sample patterns are not the same all around. */
+        cmocka_unit_test_prestate(maps_turned_by_right_angles, &subjects[1]),
+        cmocka_unit_test(planes_do_not_shadow_themselves),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -11,6 +11,7 @@
 
 #include "fixture.h"
 #include "readback.h"
+#include "reference_contour.h"
 #include "reference_visibility.h"
 #include "scenes.h"
 
@@ -94,7 +95,8 @@ static void stage_destroy(stage *s)
     scene_destroy(&s->scene);
 }
 
-static void compare(const stage *s, sight *view, const softsh_settings *settings, bool normals, differences *out)
+/* What the settings ask for, of all receivers. */
+static void reference_image(const stage *s, const softsh_settings *settings, bool normals, double *visibility)
 {
     const float *const layers[2] = {s->g[0], s->g[1]};
     const reference_settings wanted = {.pattern = settings->pattern,
@@ -102,15 +104,34 @@ static void compare(const stage *s, sight *view, const softsh_settings *settings
                                        .aggregation = settings->aggregation,
                                        .merge = settings->merge,
                                        .level = settings->min_level};
+    const uint32_t layer_count = s->scene.lamp.layer_count;
+    const bool contours = settings->technique == SOFTSH_TECHNIQUE_CONTOUR && !s->map.point;
+    reference_dual_grid grids[2];
+    for (uint32_t i = 0; i < layer_count && contours; i++)
+        assert_true(reference_dual_grid_create(&grids[i], &s->map, &wanted, layers[i]));
+    for (uint32_t i = 0; i < MAX_PIXELS; i++) {
+        const reference_receiver *const r = &s->receivers[normals][i];
+        reference_occlusion o;
+        if (contours) {
+            assert_true(reference_contour_visibility(grids, layer_count, &s->map, &wanted, r, &visibility[i]));
+            continue;
+        }
+        assert_true(reference_visibility(&s->map, layers, layer_count, &wanted, r, &o));
+        visibility[i] = 1.0 - (settings->technique == SOFTSH_TECHNIQUE_AREA ? fmin(o.area, 1.0) : o.bitmask);
+    }
+    for (uint32_t i = 0; i < layer_count && contours; i++)
+        reference_dual_grid_destroy(&grids[i]);
+}
+
+static void compare(const stage *s, sight *view, const softsh_settings *settings, bool normals, differences *out)
+{
     float visibility[MAX_PIXELS];
+    double reference[MAX_PIXELS];
 
     sight_run(view, &s->lamp, &s->eye[normals], &s->options, visibility, NULL);
+    reference_image(s, settings, normals, reference);
     for (uint32_t i = 0; i < MAX_PIXELS; i++) {
-        reference_occlusion o;
-        assert_true(
-            reference_visibility(&s->map, layers, s->scene.lamp.layer_count, &wanted, &s->receivers[normals][i], &o));
-        const double right = settings->technique == SOFTSH_TECHNIQUE_AREA ? 1.0 - fmin(o.area, 1.0) : 1.0 - o.bitmask;
-        const double difference = fabs((double)visibility[i] - right);
+        const double right = reference[i], difference = fabs((double)visibility[i] - right);
         out->penumbra += right > 0.0 && right < 1.0;
         /* Not a number is not near anything. */
         out->notable += !(difference <= 4.0 / 256.0);
@@ -125,9 +146,10 @@ static void compare(const stage *s, sight *view, const softsh_settings *settings
     }
 }
 
-/* Levels `first` to 2 of one view, each seen by three of the scenes; the walk through the scenes goes on from view to
- * view. */
-static void check_view(softsh_settings settings, bool normals, uint32_t first, uint32_t *next, differences *out)
+/* Levels `first` to 2 of one view, each seen by `scenes` of the scenes; the walk through the scenes goes on from view
+ * to view. */
+static void check_view(softsh_settings settings, bool normals, uint32_t first, uint32_t scenes, uint32_t *next,
+                       differences *out)
 {
     const bool patches = settings.primitive == SOFTSH_PRIMITIVE_MICROPATCH ||
                          settings.primitive == SOFTSH_PRIMITIVE_MICROPATCH_UNEXTENDED;
@@ -137,13 +159,30 @@ static void check_view(softsh_settings settings, bool normals, uint32_t first, u
     sight_create(&info, &view);
     for (settings.min_level = first; settings.min_level <= 2; settings.min_level++) {
         sight_set_level(&view, settings.min_level);
-        for (uint32_t k = 0; k < 3; k++) {
+        for (uint32_t k = 0; k < scenes; k++) {
             while (patches && stages[*next % SCENES].info.light == SCENE_ROTATED)
                 ++*next;
             compare(&stages[(*next)++ % SCENES], &view, &settings, normals, out);
         }
     }
     sight_destroy(&view);
+}
+
+static void print_heading(void)
+{
+    print_message("%-9s%-23s%-16s%9s%9s%10s%12s\n", "", "primitive", "pattern", "penumbra", "maximum", "mean",
+                  "over 4/256");
+}
+
+static bool within_limits(const char *technique, const char *primitive, const char *pattern, const differences *d)
+{
+    const double pixels = (double)d->pixels;
+    print_message("%-9s%-23s%-16s%8.1f%%%9.5f%10.7f%11.3f%%\n", technique, primitive, pattern,
+                  100.0 * (double)d->penumbra / pixels, d->most, d->sum / pixels, 100.0 * (double)d->notable / pixels);
+    if (d->notable)
+        print_message("         worst: %s\n", d->worst);
+    assert_true((double)d->penumbra > 0.1 * pixels);
+    return d->sum <= mean_limit * pixels && (double)d->notable <= notable_limit * pixels;
 }
 
 static void check_estimators(softsh_technique technique, softsh_pattern first, softsh_pattern last)
@@ -154,8 +193,7 @@ static void check_estimators(softsh_technique technique, softsh_pattern first, s
     uint32_t next = 0, views = 0;
     bool failed = false;
 
-    print_message("%-9s%-23s%-16s%9s%9s%10s%12s\n", "", "primitive", "pattern", "penumbra", "maximum", "mean",
-                  "over 4/256");
+    print_heading();
     for (int primitive = SOFTSH_PRIMITIVE_MICROPATCH; primitive <= SOFTSH_PRIMITIVE_MICROQUAD_RECTANGLE; primitive++)
         for (int pattern = (int)first; pattern <= (int)last; pattern++) {
             differences d = {0};
@@ -168,17 +206,11 @@ static void check_estimators(softsh_technique technique, softsh_pattern first, s
                     .merge = views / 2 % 2 ? SOFTSH_MERGE_MAXIMUM : SOFTSH_MERGE_UNION,
                     .no_hierarchy = 1,
                 };
-                check_view(settings, views++ % 3 == 2, nearest, &next, &d);
+                check_view(settings, views++ % 3 == 2, nearest, 3, &next, &d);
             }
-            const double pixels = (double)d.pixels;
-            print_message(
-                "%-9s%-23s%-16s%8.1f%%%9.5f%10.7f%11.3f%%\n", technique == SOFTSH_TECHNIQUE_AREA ? "area" : "bitmask",
-                primitives[primitive], technique == SOFTSH_TECHNIQUE_AREA ? "" : patterns[pattern],
-                100.0 * (double)d.penumbra / pixels, d.most, d.sum / pixels, 100.0 * (double)d.notable / pixels);
-            if (d.notable)
-                print_message("         worst: %s\n", d.worst);
-            failed = failed || !(d.sum <= mean_limit * pixels) || !((double)d.notable <= notable_limit * pixels);
-            assert_true((double)d.penumbra > 0.1 * pixels);
+            const bool area = technique == SOFTSH_TECHNIQUE_AREA;
+            failed |=
+                !within_limits(area ? "area" : "bitmask", primitives[primitive], area ? "" : patterns[pattern], &d);
         }
     assert_false(failed);
 }
@@ -195,13 +227,34 @@ static void areas_are_the_references(void **state)
     check_estimators(SOFTSH_TECHNIQUE_AREA, SOFTSH_PATTERN_16X16, SOFTSH_PATTERN_16X16);
 }
 
+/* Every scene at every level; patterns do not matter. */
+static void contours_are_the_references(void **state)
+{
+    uint32_t next = 0;
+    differences d = {0};
+    (void)state;
+    for (uint32_t view = 0; view < 8; view++) {
+        const bool nearest = view & 1, maximum = view & 2, normals = view & 4;
+        const softsh_settings settings = {
+            .technique = SOFTSH_TECHNIQUE_CONTOUR,
+            .pattern = SOFTSH_PATTERN_8X8,
+            .aggregation = nearest ? SOFTSH_AGGREGATION_NEAREST : SOFTSH_AGGREGATION_SAMPLED,
+            .merge = maximum ? SOFTSH_MERGE_MAXIMUM : SOFTSH_MERGE_UNION,
+            .no_hierarchy = 1,
+        };
+        check_view(settings, normals, nearest, SCENES, &next, &d);
+    }
+    print_heading();
+    assert_true(within_limits("contour", "", "", &d));
+}
+
 /* Lights without size: every pixel is dark or lit, and settings do not matter. */
 static void hard_shadows_are_the_references(void **state)
 {
     differences d = {0};
     (void)state;
     for (int normals = 0; normals < 2; normals++) {
-        const softsh_settings settings = {.technique = SOFTSH_TECHNIQUE_BITMASK,
+        const softsh_settings settings = {.technique = normals ? SOFTSH_TECHNIQUE_CONTOUR : SOFTSH_TECHNIQUE_BITMASK,
                                           .primitive = SOFTSH_PRIMITIVE_MICROPATCH};
         const sight_info info = {.settings = settings, .width = 32, .height = 24, .normals = normals != 0};
         sight view;
@@ -242,6 +295,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bitmasks_are_the_references),
         cmocka_unit_test(areas_are_the_references),
+        cmocka_unit_test(contours_are_the_references),
         cmocka_unit_test(hard_shadows_are_the_references),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
