@@ -5,17 +5,18 @@
 #include <utility>
 
 const char *const short_names_key =
-    "p, q: micropatches, microquads, with their budget   |   PCSS: blocker + filter taps"
+    "p, q, c: micropatches, microquads, contours, with their budget   |   PCSS: blocker + filter taps"
     "   |   march, average, Embree: samples per pixel";
 
 const Look &look_of(const std::string &technique)
 {
     static const std::pair<const char *, Look> looks[] = {
-        {"copy", {"copy", "#BBBBBB", 1, 2}},       {"hard", {"hard", "#777777", 5, 4}},
-        {"pcf", {"PCF", "#56B4E9", 9, 8}},         {"pcss", {"PCSS", "#0072B2", 7, 6}},
-        {"march", {"march", "#E69F00", 11, 10}},   {"average", {"average", "#CC79A7", 13, 12}},
-        {"embree", {"Embree", "#000000", 15, 14}}, {"area", {"area", "#8B7A00", 9, 8}},
-        {"bitmask", {"bitmask", "#009E73", 5, 4}}, {"auto", {"auto", "#D55E00", 13, 12}},
+        {"copy", {"copy", "#BBBBBB", 1, 2}},         {"hard", {"hard", "#777777", 5, 4}},
+        {"pcf", {"PCF", "#56B4E9", 9, 8}},           {"pcss", {"PCSS", "#0072B2", 7, 6}},
+        {"march", {"march", "#E69F00", 11, 10}},     {"average", {"average", "#CC79A7", 13, 12}},
+        {"embree", {"Embree", "#000000", 15, 14}},   {"area", {"area", "#8B7A00", 9, 8}},
+        {"bitmask", {"bitmask", "#009E73", 5, 4}},   {"auto", {"auto", "#D55E00", 13, 12}},
+        {"contour", {"contour", "#7F3C8D", 11, 10}},
     };
     static const Look other = {"other", "#000000", 3, 1};
     for (const auto &[name, look] : looks)
@@ -83,6 +84,10 @@ std::string short_name(const Technique &technique)
         const std::string budget = setting(technique, "budget", "inf");
         name = primitive == "micropatch" ? "p" : primitive == "microquad" ? "q" : primitive;
         name += budget == "inf" ? "\u221e" : budget;
+    } else if (technique.name == "contour") {
+        said.push_back("budget");
+        const std::string budget = setting(technique, "budget", "inf");
+        name = "c" + (budget == "inf" ? "\u221e" : budget);
     } else if (technique.settings.count("samples")) {
         said.push_back("samples");
         name = setting(technique, "samples");

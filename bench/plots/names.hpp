@@ -6,8 +6,8 @@
 
 #include "technique.hpp"
 
-// One look per family. Colours are those of Okabe and Ito, which people with any colour vision can tell apart; the
-// symbols say the same again.
+// One look per family. Colours are those of Okabe and Ito, which people with any colour vision can tell apart, and a
+// violet; the symbols say the same again.
 struct Look {
     const char *title;
     const char *colour;

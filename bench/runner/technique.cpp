@@ -41,15 +41,18 @@ uint32_t number(const std::string &key, const std::string &value, uint32_t least
 
 // What a setting applies to; one bit each.
 enum Family : unsigned {
-    ON_LIBRARY = 1u << 0, // all but auto
-    ON_AUTO = 1u << 1,
-    ON_COPY = 1u << 2,
-    ON_HARD = 1u << 3,
-    ON_PCF = 1u << 4,
-    ON_PCSS = 1u << 5,
-    ON_MARCH = 1u << 6,
-    ON_AVERAGE = 1u << 7,
-    ON_EMBREE = 1u << 8,
+    ON_AREA = 1u << 0,
+    ON_CONTOUR = 1u << 1,
+    ON_BITMASK = 1u << 2,
+    ON_AUTO = 1u << 3,
+    ON_COPY = 1u << 4,
+    ON_HARD = 1u << 5,
+    ON_PCF = 1u << 6,
+    ON_PCSS = 1u << 7,
+    ON_MARCH = 1u << 8,
+    ON_AVERAGE = 1u << 9,
+    ON_EMBREE = 1u << 10,
+    ON_LIBRARY = ON_AREA | ON_CONTOUR | ON_BITMASK,                                   // all but auto
     ON_MAPS = ON_LIBRARY | ON_AUTO | ON_COPY | ON_HARD | ON_PCF | ON_PCSS | ON_MARCH, // reads the case's maps
 };
 
@@ -68,9 +71,9 @@ const std::vector<Name> technique_list = {
     {"march", ON_MARCH, TechniqueKind::dispatch, SOFTSH_TECHNIQUE_AUTO},
     {"average", ON_AVERAGE, TechniqueKind::average, SOFTSH_TECHNIQUE_AUTO},
     {"embree", ON_EMBREE, TechniqueKind::embree, SOFTSH_TECHNIQUE_AUTO},
-    {"area", ON_LIBRARY, TechniqueKind::library, SOFTSH_TECHNIQUE_AREA},
-    {"contour", ON_LIBRARY, TechniqueKind::library, SOFTSH_TECHNIQUE_CONTOUR},
-    {"bitmask", ON_LIBRARY, TechniqueKind::library, SOFTSH_TECHNIQUE_BITMASK},
+    {"area", ON_AREA, TechniqueKind::library, SOFTSH_TECHNIQUE_AREA},
+    {"contour", ON_CONTOUR, TechniqueKind::library, SOFTSH_TECHNIQUE_CONTOUR},
+    {"bitmask", ON_BITMASK, TechniqueKind::library, SOFTSH_TECHNIQUE_BITMASK},
     {"auto", ON_AUTO, TechniqueKind::library, SOFTSH_TECHNIQUE_AUTO},
 };
 
@@ -107,7 +110,7 @@ const std::vector<Setting> &setting_list()
              t.accel = static_cast<softsh_accel>(choose(
                  "accel", v, {{"hsm", SOFTSH_ACCEL_HSM}, {"mssm", SOFTSH_ACCEL_MSSM}, {"ysm", SOFTSH_ACCEL_YSM}}));
          }},
-        {"primitive", "micropatch | micropatch-unextended | microquad | microquad-rectangle", ON_LIBRARY,
+        {"primitive", "micropatch | micropatch-unextended | microquad | microquad-rectangle", ON_AREA | ON_BITMASK,
          [](Technique &t, const std::string &v) {
              t.library.primitive = static_cast<softsh_primitive>(
                  choose("primitive", v,
@@ -116,7 +119,7 @@ const std::vector<Setting> &setting_list()
                          {"microquad", SOFTSH_PRIMITIVE_MICROQUAD},
                          {"microquad-rectangle", SOFTSH_PRIMITIVE_MICROQUAD_RECTANGLE}}));
          }},
-        {"pattern", "8x8 | 16x16 | 16x16j | 32x32", ON_LIBRARY,
+        {"pattern", "8x8 | 16x16 | 16x16j | 32x32", ON_AREA | ON_BITMASK,
          [](Technique &t, const std::string &v) {
              t.library.pattern = static_cast<softsh_pattern>(choose("pattern", v,
                                                                     {{"8x8", SOFTSH_PATTERN_8X8},
@@ -135,7 +138,7 @@ const std::vector<Setting> &setting_list()
          [](Technique &t, const std::string &v) { t.library.min_level = number("level", v, 0, 13); }},
         {"hierarchy", "on | off: prune kernels and classify", ON_LIBRARY,
          [](Technique &t, const std::string &v) { t.library.no_hierarchy = !choose("hierarchy", v, on_off); }},
-        {"filter", "N: passes of the post filter", ON_LIBRARY,
+        {"filter", "N: passes of the post filter", ON_AREA | ON_BITMASK,
          [](Technique &t, const std::string &v) { t.library.filter_passes = number("filter", v, 0, 16); }},
         {"merge", "union | max: of layers", ON_LIBRARY,
          [](Technique &t, const std::string &v) {

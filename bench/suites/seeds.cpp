@@ -292,7 +292,7 @@ void run_seeds(Bench &bench)
     untried(bench, "S5", "131 scalar instructions for a 16j update",
             "drivers do not tell how many instructions a part of a shader became");
     for (const char *id : {"S6", "S7", "S8", "S9", "S10"})
-        untried(bench, id, "packets and contours", "contour extraction is not implemented yet");
+        untried(bench, id, "packets and contours", "contours are extracted one pixel at a time, without a hierarchy");
     for (const char *id : {"S11", "S12"})
         untried(bench, id, "soft shadow maps (2005)", "the technique is not implemented yet");
     untried(bench, "S13", "overlap of neighbouring micropatches", "a formula, not a measurement of this benchmark");

@@ -42,6 +42,7 @@ broken() { # a copy of the case with one substitution in case.json
 
 expect 1 "missing" "$eval" missing
 expect 1 "setting primitive" "$eval" good --technique bitmask --set primitive=brick
+expect 1 "unknown setting \"pattern\" for contour" "$eval" good --technique contour --set pattern=8x8
 expect 1 "technique" "$eval" good --technique brick
 expect 1 "budget" "$eval" good --technique bitmask --set budget=-4
 expect 2 "repeat" "$eval" good --repeat x
