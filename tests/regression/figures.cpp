@@ -46,6 +46,8 @@ std::vector<Technique> technique_list()
         parse_technique("bitmask", {"primitive=microquad", "pattern=16x16j"}),
         parse_technique("bitmask", {"primitive=micropatch", "budget=16"}),
         parse_technique("area", {"primitive=micropatch", "budget=32"}),
+        parse_technique("contour", {"budget=16"}),
+        parse_technique("contour", {"budget=16", "layers=1"}),
     };
     for (const char *variant : {"accel=hsm", "accel=mssm", "hierarchy=off", "filter=2", "merge=max"})
         list.push_back(parse_technique("bitmask", {"primitive=micropatch", "budget=32", variant}));
