@@ -15,7 +15,8 @@ typedef enum softsh_technique {
     SOFTSH_TECHNIQUE_AUTO = 0,    /* ignores all other settings */
     SOFTSH_TECHNIQUE_AREA = 1,    /* accumulated areas of back-projected micro-occluders (overlaps count twice) */
     SOFTSH_TECHNIQUE_BITMASK = 2, /* Bitmask Soft Shadows, Schwarz and Stamminger 2007 */
-    SOFTSH_TECHNIQUE_CONTOUR = 3  /* not supported yet */
+    SOFTSH_TECHNIQUE_CONTOUR = 3  /* area within the contours of what occludes, Guennebaud et al. 2007 and Yang et al.
+                                     2009; ignores pattern, primitive and filter_passes */
 } softsh_technique;
 
 /* Light sample points, section 3 of the 2007 paper. */
@@ -46,7 +47,7 @@ typedef enum softsh_aggregation {
 
 /* How layers combine. */
 typedef enum softsh_merge {
-    SOFTSH_MERGE_UNION = 0,  /* bitmasks are OR-ed (areas are added) */
+    SOFTSH_MERGE_UNION = 0,  /* bitmasks are OR-ed (areas, also those of contours, are added) */
     SOFTSH_MERGE_MAXIMUM = 1 /* the darkest single layer, as Atty et al. 2006 do for front and back faces */
 } softsh_merge;
 
@@ -58,7 +59,8 @@ typedef struct softsh_settings {
     softsh_aggregation aggregation;
     softsh_merge merge;
     uint32_t budget;        /* about budget x budget micro-occluders per layer and pixel; 0 and large numbers:
-                               240 x 240 micropatches or 160 x 160 microquads shared by the layers; at most 4096 */
+                               240 x 240 micropatches, 160 x 160 microquads or 128 x 128 samples of contours, shared by the
+                               layers; at most 4096 */
     uint32_t min_level;     /* never evaluate below this level; 0 to 13; for comparisons */
     uint32_t filter_passes; /* post filter of section 3.1, 0 to 16; bitmask only */
     uint32_t no_hierarchy;  /* nonzero: neither prune kernels nor classify; for comparisons */

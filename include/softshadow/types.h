@@ -210,7 +210,7 @@ typedef struct softsh_stats {
     uint64_t umbra;             /* found dark likewise */
     uint64_t active;            /* evaluated one by one */
     uint64_t nodes;             /* four per query of the hierarchy and layer */
-    uint64_t primitives;        /* micro-occluders projected */
+    uint64_t primitives;        /* micro-occluders, or edges of contours, projected */
     uint64_t tiles;             /* 8 x 8 pixel tiles in the render area */
     uint64_t undecided_tiles;   /* needed a look at their pixels */
     uint64_t clamped;           /* active pixels whose level the budget, or the bound on one pixel's work, coarsened */
