@@ -9,6 +9,7 @@ set(SOFTSHADOW_SHADERS
     classify/classify_pixels
     evaluate/bitmask_evaluate
     evaluate/contour_evaluate
+    evaluate/interpolate
     evaluate/hard_evaluate
     filter/post_filter)
 

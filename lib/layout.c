@@ -59,7 +59,7 @@ void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_
     out->buffer_size = end;
 }
 
-void softshi_layout_view(VkExtent2D extent, bool filter, softshi_view_layout *out)
+void softshi_layout_view(VkExtent2D extent, uint32_t planes, softshi_view_layout *out)
 {
     const VkDeviceSize tiles =
         (VkDeviceSize)((extent.width + SS_TILE_X - 1) / SS_TILE_X) * ((extent.height + SS_TILE_Y - 1) / SS_TILE_Y);
@@ -67,6 +67,6 @@ void softshi_layout_view(VkExtent2D extent, bool filter, softshi_view_layout *ou
     out->frame = append(&end, sizeof(ss_frame));
     out->control = append(&end, sizeof(ss_control));
     out->tiles = append(&end, tiles * SS_TILE_WORDS * sizeof(uint32_t));
-    out->filter = append(&end, filter ? (VkDeviceSize)extent.width * extent.height * 3 * sizeof(float) : 4);
+    out->filter = append(&end, planes ? (VkDeviceSize)extent.width * extent.height * planes * sizeof(float) : 4);
     out->buffer_size = end;
 }

@@ -34,6 +34,7 @@ typedef struct softshi_view_layout {
     VkDeviceSize buffer_size;
 } softshi_view_layout;
 
-void softshi_layout_view(VkExtent2D extent, bool filter, softshi_view_layout *out);
+/* `planes`: values kept per pixel. */
+void softshi_layout_view(VkExtent2D extent, uint32_t planes, softshi_view_layout *out);
 
 #endif

@@ -61,21 +61,19 @@ static softsh_result create_sets(softsh_view *v, uint32_t recordings)
 static softsh_result create_pipelines(softsh_view *v)
 {
     softsh_result result = SOFTSH_SUCCESS;
-    const int kinds = v->automatic ? SOFTSHI_KINDS : SOFTSHI_KIND_TURNED;
-    for (int kind = 0; kind < kinds && result == SOFTSH_SUCCESS; kind++) {
-        softsh_settings settings = v->settings;
-        if (kind & SOFTSHI_KIND_TURNED)
-            settings.primitive = SOFTSH_PRIMITIVE_MICROQUAD;
-        softshi_specialization constants = softshi_settings_specialize(&settings, v->normals, v->stats);
+    for (int kind = 0; kind < SOFTSHI_KINDS && result == SOFTSH_SUCCESS; kind++) {
+        softshi_specialization constants = softshi_settings_specialize(&v->settings, v->normals, v->stats);
         constants.values[SS_SPEC_ACCEL_WIDE] = (kind & SOFTSHI_KIND_WIDE) != 0;
         constants.values[SS_SPEC_LAYERED] = (kind & SOFTSHI_KIND_LAYERED) != 0;
         result = softshi_classify_create(v, kind, &constants);
         if (result == SOFTSH_SUCCESS)
-            result = settings.technique == SOFTSH_TECHNIQUE_CONTOUR ? softshi_contour_create(v, kind, &constants)
-                                                                    : softshi_bitmask_create(v, kind, &constants);
+            result = v->settings.technique == SOFTSH_TECHNIQUE_CONTOUR ? softshi_contour_create(v, kind, &constants)
+                                                                       : softshi_bitmask_create(v, kind, &constants);
         constants.values[SS_SPEC_LAYERED] = 1;
         if (result == SOFTSH_SUCCESS && kind == 0)
             result = softshi_hard_create(v, &constants);
+        if (result == SOFTSH_SUCCESS && kind == 0 && v->settings.sparse)
+            result = softshi_interpolate_create(v, &constants);
         if (result == SOFTSH_SUCCESS && kind == 0 && v->settings.filter_passes > 0)
             result = softshi_post_filter_create(v, &constants);
     }
@@ -100,10 +98,9 @@ softsh_result softsh_view_create(softsh_context *context, const softsh_view_info
     v->max_extent = info->max_extent;
     v->output_format = info->output_format;
     v->settings = softshi_settings_resolve(info->settings);
-    v->automatic = !info->settings || info->settings->technique == SOFTSH_TECHNIQUE_AUTO;
     v->stats = info->stats != 0;
     v->normals = info->normals != 0;
-    softshi_layout_view(v->max_extent, v->settings.filter_passes > 0, &v->layout);
+    softshi_layout_view(v->max_extent, v->settings.filter_passes > 0 ? 3 : v->settings.sparse ? 1 : 0, &v->layout);
     result = check_limits(v);
     if (result == SOFTSH_SUCCESS)
         result = softshi_block_create(context, &v->block, v->layout.buffer_size, v->name, "view scratch");
@@ -135,6 +132,7 @@ void softsh_view_destroy(softsh_view *v)
     softshi_pipeline_destroy(context, &p->classify_columns);
     softshi_pipeline_destroy(context, &p->hard);
     softshi_pipeline_destroy(context, &p->filter);
+    softshi_pipeline_destroy(context, &p->interpolate);
     if (v->pool)
         context->vk.DestroyDescriptorPool(context->device, v->pool, context->allocator);
     softshi_block_destroy(context, &v->block);

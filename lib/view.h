@@ -9,13 +9,12 @@
 #include "vulkan/pass.h"
 
 /* Passes that query the hierarchy come in kinds, for what a view cannot know: occluders without and with wide levels
- * (bit 0), with one layer and with more (bit 1), and for automatic settings a light along the map's axes or turned
- * against them (bit 2), which micropatches cannot do. */
-enum { SOFTSHI_KIND_WIDE = 1, SOFTSHI_KIND_LAYERED = 2, SOFTSHI_KIND_TURNED = 4, SOFTSHI_KINDS = 8 };
+ * (bit 0), with one layer and with more (bit 1). */
+enum { SOFTSHI_KIND_WIDE = 1, SOFTSHI_KIND_LAYERED = 2, SOFTSHI_KINDS = 4 };
 
 typedef struct softshi_view_pipelines {
     softshi_pipeline classify_tiles[SOFTSHI_KINDS], classify_pixels[SOFTSHI_KINDS], evaluate[SOFTSHI_KINDS];
-    softshi_pipeline classify_columns, hard, filter;
+    softshi_pipeline classify_columns, hard, filter, interpolate;
 } softshi_view_pipelines;
 
 struct softsh_view {
@@ -24,7 +23,6 @@ struct softsh_view {
     VkExtent2D max_extent;
     VkFormat output_format;
     softsh_settings settings; /* resolved */
-    bool automatic;           /* they were the library's choice */
     bool stats, normals;
     softshi_view_layout layout;
     softshi_block block;

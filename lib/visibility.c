@@ -55,7 +55,7 @@ static softsh_result check(const softsh_view *v, const softsh_visibility_info *i
         return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT,
                             "softsh_visibility_info::stats_offset is %llu, expected a multiple of 4",
                             (unsigned long long)info->stats_offset);
-    if (!v->automatic && softshi_settings_need_alignment(&v->settings) && !info->occluders->light.point &&
+    if (softshi_settings_need_alignment(&v->settings) && !info->occluders->light.point &&
         !info->occluders->light.axis_aligned)
         return softshi_fail(
             context, SOFTSH_ERROR_UNSUPPORTED,
@@ -137,15 +137,15 @@ softsh_result softsh_cmd_compute_visibility(VkCommandBuffer cmd, softsh_view *v,
     softshi_visibility visibility = {
         .view = v,
         .occluders = o,
-        .kind = (o->wide ? SOFTSHI_KIND_WIDE : 0) | (o->layered ? SOFTSHI_KIND_LAYERED : 0) |
-                (v->automatic && !o->light.axis_aligned ? SOFTSHI_KIND_TURNED : 0),
+        .kind = (o->wide ? SOFTSHI_KIND_WIDE : 0) | (o->layered ? SOFTSHI_KIND_LAYERED : 0),
     };
     result = softshi_camera_space_create(v->context, info->cameras, &info->occluders->map, &visibility.frame);
     if (result != SOFTSH_SUCCESS)
         return result;
     fill_frame(v, info, area, &visibility.frame);
 
-    const ss_control cleared = {.pixels_args = {0, 1, 1, 0}, .evaluate_args = {0, 1, 1, 0}};
+    const ss_control cleared = {
+        .pixels_args = {0, 1, 1, 0}, .evaluate_args = {{0, 1, 1, 0}, {0, 1, 1, 0}}, .interpolate_args = {0, 1, 1, 0}};
     softshi_recorder recorder;
     visibility.recorder = &recorder;
     softshi_record_begin(&recorder, v->context, cmd, info->timestamps, v->name);
@@ -161,7 +161,11 @@ softsh_result softsh_cmd_compute_visibility(VkCommandBuffer cmd, softsh_view *v,
         softshi_hard_record(&visibility);
     } else {
         softshi_classify_record(&visibility);
-        softshi_bitmask_record(&visibility);
+        softshi_evaluate_record(&visibility, 0);
+        if (v->settings.sparse) {
+            softshi_interpolate_record(&visibility);
+            softshi_evaluate_record(&visibility, 1);
+        }
         softshi_post_filter_record(&visibility);
     }
     if (info->stats_buffer)

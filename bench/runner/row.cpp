@@ -212,6 +212,7 @@ std::string to_json(const Row &row)
     add_optional(counts, "tiles", count(row, &softsh_stats::tiles));
     add_optional(counts, "undecided_tiles", count(row, &softsh_stats::undecided_tiles));
     add_optional(counts, "clamped", count(row, &softsh_stats::clamped));
+    add_optional(counts, "interpolated", count(row, &softsh_stats::interpolated));
     std::optional<double> built, skipped;
     if (row.stats) {
         built = row.stats->wide_levels_built;

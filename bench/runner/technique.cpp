@@ -138,6 +138,8 @@ const std::vector<Setting> &setting_list()
          [](Technique &t, const std::string &v) { t.library.min_level = number("level", v, 0, 13); }},
         {"hierarchy", "on | off: prune kernels and classify", ON_LIBRARY,
          [](Technique &t, const std::string &v) { t.library.no_hierarchy = !choose("hierarchy", v, on_off); }},
+        {"sparse", "on | off: interpolate pixels between others", ON_LIBRARY,
+         [](Technique &t, const std::string &v) { t.library.sparse = choose("sparse", v, on_off); }},
         {"filter", "N: passes of the post filter", ON_AREA | ON_BITMASK,
          [](Technique &t, const std::string &v) { t.library.filter_passes = number("filter", v, 0, 16); }},
         {"merge", "union | max: of layers", ON_LIBRARY,

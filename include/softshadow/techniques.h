@@ -47,8 +47,9 @@ typedef enum softsh_aggregation {
 
 /* How layers combine. */
 typedef enum softsh_merge {
-    SOFTSH_MERGE_UNION = 0,  /* bitmasks are OR-ed (areas, also those of contours, are added) */
-    SOFTSH_MERGE_MAXIMUM = 1 /* the darkest single layer, as Atty et al. 2006 do for front and back faces */
+    SOFTSH_MERGE_DEFAULT = 0, /* union of bitmasks, maximum of areas */
+    SOFTSH_MERGE_UNION = 1,   /* bitmasks are OR-ed; areas are added, so that what two layers hide counts twice */
+    SOFTSH_MERGE_MAXIMUM = 2  /* the darkest single layer, as Atty et al. 2006 do for front and back faces */
 } softsh_merge;
 
 typedef struct softsh_settings {
@@ -63,6 +64,9 @@ typedef struct softsh_settings {
                                layers; at most 4096 */
     uint32_t min_level;     /* never evaluate below this level; 0 to 13; for comparisons */
     uint32_t filter_passes; /* post filter of section 3.1, 0 to 16; bitmask only */
+    uint32_t sparse;        /* nonzero: evaluate every second pixel of every second row, and of the rest those whose
+                               neighbours differ or lie on other surfaces; interpolate the others. Ignored with
+                               filter_passes */
     uint32_t no_hierarchy;  /* nonzero: neither prune kernels nor classify; for comparisons */
 } softsh_settings;
 

@@ -214,6 +214,7 @@ typedef struct softsh_stats {
     uint64_t tiles;             /* 8 x 8 pixel tiles in the render area */
     uint64_t undecided_tiles;   /* needed a look at their pixels */
     uint64_t clamped;           /* active pixels whose level the budget, or the bound on one pixel's work, coarsened */
+    uint64_t interpolated;      /* active pixels that took their neighbours' mean instead */
     uint32_t wide_levels_built; /* MSSM levels of the occluders' last build */
     uint32_t wide_levels_skipped; /* MSSM levels that no kernel of this light and map can ask for */
 } softsh_stats;

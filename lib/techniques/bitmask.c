@@ -8,16 +8,3 @@ softsh_result softshi_bitmask_create(softsh_view *view, int kind, const softshi_
     return softshi_pipeline_create(view->context, SOFTSHI_SHADER_BITMASK_EVALUATE, constants,
                                    &view->pipelines.evaluate[kind]);
 }
-
-void softshi_bitmask_record(const softshi_visibility *visibility)
-{
-    const softsh_view *view = visibility->view;
-    const softshi_pass evaluate = {
-        .pipeline = &view->pipelines.evaluate[visibility->kind],
-        .reads = SOFTSHI_HIERARCHY | SOFTSHI_FRAME | SOFTSHI_TILES,
-        .writes = SOFTSHI_CONTROL | SOFTSHI_FILTER | SOFTSHI_VISIBILITY,
-        .indirect = view->block.buffer,
-        .indirect_offset = view->layout.control.offset + offsetof(ss_control, evaluate_args),
-    };
-    softshi_record_pass(visibility->recorder, &evaluate);
-}

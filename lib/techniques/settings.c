@@ -7,18 +7,20 @@ softsh_settings softshi_settings_resolve(const softsh_settings *settings)
     if (settings)
         s = *settings;
     if (s.technique == SOFTSH_TECHNIQUE_AUTO)
-        s = (softsh_settings){.struct_size = sizeof s,
-                              .technique = SOFTSH_TECHNIQUE_BITMASK,
-                              .primitive = SOFTSH_PRIMITIVE_MICROPATCH,
-                              .budget = 32};
+        s = (softsh_settings){
+            .struct_size = sizeof s, .technique = SOFTSH_TECHNIQUE_CONTOUR, .budget = 32, .sparse = 1};
     if (s.pattern == SOFTSH_PATTERN_DEFAULT)
         s.pattern = SOFTSH_PATTERN_16X16_JITTERED;
     if (s.primitive == SOFTSH_PRIMITIVE_DEFAULT)
         s.primitive = SOFTSH_PRIMITIVE_MICROQUAD;
     if (s.aggregation == SOFTSH_AGGREGATION_DEFAULT)
         s.aggregation = SOFTSH_AGGREGATION_SAMPLED;
+    if (s.merge == SOFTSH_MERGE_DEFAULT)
+        s.merge = s.technique == SOFTSH_TECHNIQUE_BITMASK ? SOFTSH_MERGE_UNION : SOFTSH_MERGE_MAXIMUM;
     if (s.technique != SOFTSH_TECHNIQUE_BITMASK)
         s.filter_passes = 0;
+    if (s.filter_passes > 0)
+        s.sparse = 0;
     return s;
 }
 
@@ -45,6 +47,7 @@ softshi_specialization softshi_settings_specialize(const softsh_settings *s, boo
     c.values[SS_SPEC_STATS] = stats;
     c.values[SS_SPEC_FILTER] = s->filter_passes > 0;
     c.values[SS_SPEC_NORMALS] = normals;
+    c.values[SS_SPEC_SPARSE] = s->sparse != 0;
     return c;
 }
 

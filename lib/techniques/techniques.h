@@ -9,9 +9,14 @@ softsh_result softshi_classify_create(softsh_view *view, int kind, const softshi
 void softshi_classify_record(const softshi_visibility *visibility);
 
 softsh_result softshi_bitmask_create(softsh_view *view, int kind, const softshi_specialization *constants);
-void softshi_bitmask_record(const softshi_visibility *visibility);
 
 softsh_result softshi_contour_create(softsh_view *view, int kind, const softshi_specialization *constants);
+
+/* The pixels of the active list, by whichever technique the view was created with. Round 1: those that interpolation left. */
+void softshi_evaluate_record(const softshi_visibility *visibility, uint32_t round);
+
+softsh_result softshi_interpolate_create(softsh_view *view, const softshi_specialization *constants);
+void softshi_interpolate_record(const softshi_visibility *visibility);
 
 softsh_result softshi_post_filter_create(softsh_view *view, const softshi_specialization *constants);
 void softshi_post_filter_record(const softshi_visibility *visibility);

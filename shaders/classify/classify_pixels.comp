@@ -8,23 +8,17 @@
 #include "ss_occluder_bindings.glsl"
 #include "ss_io_bindings.glsl"
 #include "ss_filter_values.glsl"
+#include "ss_lists.glsl"
 #include "ss_receiver.glsl"
 #include "ss_range.glsl"
 #include "ss_kernel.glsl"
 
 layout(local_size_x = SS_TILE_X, local_size_y = SS_TILE_Y) in;
 
-void append_active_pixel(uint id, float g_hi)
+// With interpolation every second pixel of every second row is evaluated first.
+bool is_on_lattice(ivec2 pixel)
 {
-    const uint i = atomicAdd(control.evaluate_args.w, 1u);
-    // The first pixel of each group of the next pass makes the dispatch large enough for it.
-    if (i % SS_EVALUATE_GROUP == 0u) {
-        const uint group = i / SS_EVALUATE_GROUP;
-        atomicMax(control.evaluate_args.x, min(group + 1u, SS_DISPATCH_WIDTH));
-        atomicMax(control.evaluate_args.y, group / SS_DISPATCH_WIDTH + 1u);
-    }
-    tiles[ss_active_slot(i)] = id;
-    tiles[ss_active_slot(i) + 1u] = floatBitsToUint(g_hi);
+    return !SS_SPARSE || ((pixel.x | pixel.y) & 1) == 0;
 }
 
 void main()
@@ -39,8 +33,13 @@ void main()
     const ss_receiver r = ss_load_receiver(pixel);
     const ss_kernel k = ss_find_kernel(r, uintBitsToFloat(tiles[ss_undecided_slot(index) + 1u]));
     const uint state = !r.valid ? SS_STATE_LIT : r.away ? SS_STATE_UMBRA : k.state;
-    if (state == SS_STATE_PIXELS)
-        append_active_pixel(tile * SS_TILE_PIXELS + lane, k.g_hi);
+    const uint id = tile * SS_TILE_PIXELS + lane;
+    if (state == SS_STATE_PIXELS && is_on_lattice(pixel))
+        ss_append_active(0u, id, k.g_hi);
+    if (SS_SPARSE && state == SS_STATE_PIXELS && !is_on_lattice(pixel))
+        ss_append_interpolated(id, k.g_hi);
+    if (SS_SPARSE && state != SS_STATE_PIXELS)
+        ss_store_visible(pixel, state == SS_STATE_UMBRA ? SS_ALL_DARK : SS_ALL_LIT);
     if (state == SS_STATE_UMBRA)
         ss_write_visibility(pixel, 0.0);
     if (SS_FILTER) {

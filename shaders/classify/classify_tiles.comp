@@ -157,10 +157,13 @@ uint classify(tile_bounds t, inout float g_hi, inout uint nodes)
             range = max(range, ss_range_pyramid(layer, s.texel_lo, s.texel_hi));
         nodes += 4u * ss_layers();
         const float rise = dot(abs(t.plane.xy), vec2(s.texel_hi - s.texel_lo + 1)) + t.eta;
+        const bool inside = all(greaterThanEqual(t.lo, vec2(0.0))) && all(lessThanEqual(t.hi, limit));
+        const bool dark = ss_rim_occludes(
+            s, s.covered && inside && range.x > t.g_hi + rise && occ.light.z * range.y < occ.light.w && !biased,
+            t.g_hi + rise + (abs(t.plane.x) + abs(t.plane.y)) * float(1u << s.level));
         if (!(range.y > t.g_lo + (biased ? 0.0 : t.eta)))
             state = SS_STATE_LIT;
-        else if (s.covered && all(greaterThanEqual(t.lo, vec2(0.0))) && all(lessThanEqual(t.hi, limit)) &&
-                 range.x > t.g_hi + rise && occ.light.z * range.y < occ.light.w && !biased)
+        else if (dark)
             state = SS_STATE_UMBRA;
         g_hi = min(g_hi, range.y);
     }

@@ -16,6 +16,10 @@
 #include "ss_primitive.glsl"
 
 layout(local_size_x = SS_EVALUATE_GROUP) in;
+layout(push_constant) uniform ss_push
+{
+    ss_evaluate_push push;
+};
 
 struct vertex
 {
@@ -30,6 +34,9 @@ vertex load_vertex(uint layer, ivec2 at, uint level, ss_back_projection b, ss_re
     return vertex(ss_back_project(b, place, g), ss_occludes(g, place, b, r, band));
 }
 
+// Whether any sample of the kernel occludes.
+bool any_occludes;
+
 void add_quads(uint layer, ss_samples s, ss_back_projection b, ss_receiver r, float band)
 {
     const ivec2 up = ivec2(0, 1);
@@ -39,6 +46,7 @@ void add_quads(uint layer, ss_samples s, ss_back_projection b, ss_receiver r, fl
         for (int x = s.lo.x + 1; x <= s.hi.x; x++) {
             const vertex next_low = load_vertex(layer, ivec2(x, y), s.level, b, r, band);
             const vertex next_high = load_vertex(layer, ivec2(x, y) + up, s.level, b, r, band);
+            any_occludes = any_occludes || next_low.occludes || next_high.occludes;
             if (low.occludes && high.occludes && next_low.occludes && next_high.occludes)
                 ss_add_quad(low.at, next_low.at, next_high.at, high.at);
             low = next_low;
@@ -79,6 +87,7 @@ void add_patches(uint layer, ss_samples s, ss_back_projection b, ss_receiver r, 
                 lo.x = left.occludes ? min(lo.x, left.hi.x) : lo.x;
                 lo.y = below.occludes && y > 0 ? min(lo.y, below.hi.y) : lo.y;
             }
+            any_occludes = any_occludes || here.occludes;
             if (here.occludes)
                 ss_add_rectangle(lo, here.hi);
             left = here;
@@ -89,7 +98,7 @@ void add_patches(uint layer, ss_samples s, ss_back_projection b, ss_receiver r, 
 void main()
 {
     const uint index = (gl_WorkGroupID.y * SS_DISPATCH_WIDTH + gl_WorkGroupID.x) * SS_EVALUATE_GROUP + gl_LocalInvocationIndex;
-    if (index >= control.evaluate_args.w)
+    if (index >= control.evaluate_args[push.round].w)
         return;
     const uint id = tiles[ss_active_slot(index)];
     const float g_hi = uintBitsToFloat(tiles[ss_active_slot(index) + 1u]);
@@ -104,6 +113,7 @@ void main()
     float mask_occlusion = 0.0, area_occlusion = 0.0;
     ss_mask_clear();
     ss_area = 0.0;
+    any_occludes = false;
     for (uint layer = 0u; layer < ss_layers(); layer++) {
         if (SS_IS_PATCH)
             add_patches(layer, samples, b, r, band);
@@ -119,6 +129,8 @@ void main()
     }
     const float occlusion = SS_PATTERN_SIDE != 0 ? mask_occlusion : min(area_occlusion, 1.0);
     ss_write_visibility(pixel, 1.0 - occlusion);
+    if (SS_SPARSE)
+        ss_store_visible(pixel, any_occludes ? 1.0 - occlusion : SS_ALL_LIT);
     if (SS_FILTER)
         ss_store_filter_values(pixel, area_occlusion, occlusion);
     if (SS_STATS) {

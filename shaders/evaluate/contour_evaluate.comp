@@ -9,24 +9,58 @@
 #include "ss_specialization.glsl"
 #include "ss_occluder_bindings.glsl"
 #include "ss_io_bindings.glsl"
+#include "ss_filter_values.glsl"
 #include "ss_receiver.glsl"
 #include "ss_range.glsl"
 #include "ss_kernel.glsl"
 #include "ss_sample.glsl"
 
 layout(local_size_x = SS_EVALUATE_GROUP) in;
+layout(push_constant) uniform ss_push
+{
+    ss_evaluate_push push;
+};
 
 const int SS_WORD_CELLS = 31; // a cell has samples of two neighbouring bits
 
-// Which of the samples x0 to x0 + 31 of a row occlude; those outside the kernel do not.
-uint occluding(uint layer, int x0, int y, ss_samples s, ss_back_projection b, ss_receiver r, float band)
+// Samples x0 to x0 + 31 of a few rows, as far as blocks of them tell.
+struct row_blocks
 {
-    const int first = max(x0, s.lo.x), last = y < s.lo.y || y > s.hi.y ? first - 1 : min(x0 + SS_WORD_CELLS, s.hi.x);
-    uint bits = 0u;
-    for (int x = first; x <= last; x++) {
-        const ivec2 at = ivec2(x, y);
+    uint full;  // these occlude
+    uint mixed; // these must be looked at; the rest do not occlude
+};
+
+// What the depth range of a block of 2^log2_side x 2^log2_side samples says about them: docs/numerics.md, section 10.
+void add_block(uint layer, ivec2 block, int log2_side, int x0, ss_samples s, ss_back_projection b, ss_receiver r, float band,
+               inout row_blocks rows)
+{
+    const int shift = log2_side + int(s.level), level = min(shift, int(occ.levels.x));
+    const vec2 range = ss_load_pyramid(layer, uint(level), (block << shift) >> level);
+    const float half_side = 0.5 * float((1 << shift) - 1);
+    const vec2 away = vec2(block << shift) + (0.5 + half_side) - r.uv;
+    const float plane = b.g - r.eta + dot(r.gradient, away), rise = (abs(r.gradient.x) + abs(r.gradient.y)) * half_side;
+    const float noise = r.drift * (abs(away.x) + abs(away.y) + 2.0 * half_side);
+    // A quarter of eta is more than these sums are rounded by.
+    const bool under = r.smooth_surface && range.y <= plane - rise + band - 0.25 * r.eta;
+    const bool none = level == shift && (!(range.y > b.g) || under);
+    const bool every = level == shift && range.x > b.g && occ.light.w - occ.light.z * range.y > 0.0 &&
+                       range.x > plane + rise + band + noise + 0.25 * r.eta;
+    const int first = (block.x << log2_side) - x0;
+    const uint side = (1u << (1 << log2_side)) - 1u, bits = first < 0 ? side >> -first : side << first;
+    rows.full |= every ? bits : 0u;
+    rows.mixed |= none || every ? 0u : bits;
+}
+
+// Which of the samples x0 to x0 + 31 of a row occlude; `inside` are those of the kernel, the others do not.
+uint occluding(uint layer, int x0, int y, uint inside, row_blocks rows, ss_samples s, ss_back_projection b, ss_receiver r,
+               float band)
+{
+    uint bits = rows.full & inside;
+    for (uint todo = rows.mixed & inside; todo != 0u; todo &= todo - 1u) {
+        const int k = findLSB(todo);
+        const ivec2 at = ivec2(x0 + k, y);
         const float g = ss_sample_depth(layer, at, s.level);
-        bits |= uint(ss_occludes(g, ss_sample_place(at, s.level), b, r, band)) << (x - x0);
+        bits |= uint(ss_occludes(g, ss_sample_place(at, s.level), b, r, band)) << k;
     }
     return bits;
 }
@@ -68,10 +102,24 @@ float edge_area(vec2 from, vec2 to)
 float layer_area(uint layer, ss_samples s, ss_back_projection b, ss_receiver r, float band, inout uint edges)
 {
     float area = 0.0;
+    // Blocks pay in kernels of several; measured: not below 24 samples a side, and larger ones from 48.
+    const int side = max(s.hi.x - s.lo.x, s.hi.y - s.lo.y) + 1, log2_side = side > 48 ? 3 : 2;
+    const bool in_blocks = SS_HIERARCHY && side > 24;
     for (int x0 = s.lo.x - 1; x0 <= s.hi.x; x0 += SS_WORD_CELLS) {
+        // Bits of the samples of the kernel: first to last of 32.
+        const int first = max(s.lo.x - x0, 0), last = min(s.hi.x - x0, SS_WORD_CELLS);
+        const uint columns = (0xffffffffu >> (SS_WORD_CELLS - last)) & (0xffffffffu << first);
+        row_blocks rows;
         uint below = 0u;
         for (int y = s.lo.y; y <= s.hi.y + 1; y++) {
-            const uint above = occluding(layer, x0, y, s, b, r, band);
+            // New blocks, by a loop that most rows skip.
+            const bool entered = y == s.lo.y || (y & ((1 << log2_side) - 1)) == 0;
+            const int first_block = max(x0 + first, 0) >> log2_side, end_block = entered && in_blocks ? (x0 + last >> log2_side) + 1 : first_block;
+            rows.full = entered ? 0u : rows.full;
+            rows.mixed = entered ? (in_blocks ? 0u : 0xffffffffu) : rows.mixed;
+            for (int x = first_block; x < end_block; x++)
+                add_block(layer, ivec2(x, y >> log2_side), log2_side, x0, s, b, r, band, rows);
+            const uint above = occluding(layer, x0, y, y <= s.hi.y ? columns : 0u, rows, s, b, r, band);
             // Corners a, b, c, d of all cells of the row, counter-clockwise from the lower left.
             const uint ca = below, cb = below >> 1, cc = above >> 1, cd = above;
             const uint any = (ca | cb | cc | cd) & 0x7fffffffu, all = ca & cb & cc & cd;
@@ -107,7 +155,7 @@ float layer_area(uint layer, ss_samples s, ss_back_projection b, ss_receiver r, 
 void main()
 {
     const uint index = (gl_WorkGroupID.y * SS_DISPATCH_WIDTH + gl_WorkGroupID.x) * SS_EVALUATE_GROUP + gl_LocalInvocationIndex;
-    if (index >= control.evaluate_args.w)
+    if (index >= control.evaluate_args[push.round].w)
         return;
     const uint id = tiles[ss_active_slot(index)];
     const float g_hi = uintBitsToFloat(tiles[ss_active_slot(index) + 1u]);
@@ -127,6 +175,8 @@ void main()
         occlusion = SS_MERGE_MAXIMUM ? max(occlusion, area) : min(occlusion + area, 1.0);
     }
     ss_write_visibility(pixel, 1.0 - occlusion);
+    if (SS_SPARSE)
+        ss_store_visible(pixel, edges == 0u ? SS_ALL_LIT : 1.0 - occlusion);
     if (SS_STATS) {
         ss_count(SS_STAT_PRIMITIVES, edges);
         if (samples.clamped)

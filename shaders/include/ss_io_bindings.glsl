@@ -33,6 +33,11 @@ uint ss_active_slot(uint i)
     return 3u * frame.tiles.z + 2u * i;
 }
 
+uint ss_interpolated_slot(uint i)
+{
+    return ss_active_slot(frame.tiles.z * SS_TILE_PIXELS - 1u - i);
+}
+
 // Four floats of column `column` of a tile.
 uint ss_column_slot(uint tile, uint column)
 {

@@ -13,12 +13,18 @@ float ss_clip_to_light(float g)
     return occ.light.z > 0.0 ? min(g, occ.light.w / occ.light.z) : g;
 }
 
+// Half the sides of the light's bounding box, per unit of fan depth.
+vec2 ss_light_reach()
+{
+    return vec2(abs(occ.a.x) + abs(occ.a.y), abs(occ.a.z) + abs(occ.a.w));
+}
+
 // Bounding box (x0, y0, x1, y1), in texels, of the light seen from receivers in uv_lo..uv_hi no farther than g, for
 // occluders up to g_hi; den is the least epsilon - delta g of these receivers.
 vec4 ss_kernel_box(vec2 uv_lo, vec2 uv_hi, float g, float den, float g_hi)
 {
     const float k = max(ss_clip_to_light(g_hi) - g, 0.0) / den;
-    const vec2 reach = vec2(abs(occ.a.x) + abs(occ.a.y), abs(occ.a.z) + abs(occ.a.w)) * k;
+    const vec2 reach = ss_light_reach() * k;
     const vec2 lo = (occ.light.xy - occ.light.z * (occ.light.z > 0.0 ? uv_hi : uv_lo)) * k;
     const vec2 hi = (occ.light.xy - occ.light.z * (occ.light.z > 0.0 ? uv_lo : uv_hi)) * k;
     return vec4(uv_lo + min(lo - reach, 0.0), uv_hi + max(hi + reach, 0.0));
@@ -28,10 +34,13 @@ struct ss_samples
 {
     uint level;
     ivec2 lo, hi;       // samples, inclusive, clipped to the level
-    ivec2 texel_lo, texel_hi; // the texels they stand for
+    ivec2 texel_lo, texel_hi; // the texels that classification looks at
     bool covered;       // nothing was clipped
     bool clamped;       // the budget made the level coarser
 };
+
+// Samples a side from which on a contour's kernel is large: four corners of an eighth of a cell are 1/32 of it.
+const float SS_INNER_SAMPLES = 4.0;
 
 ivec2 ss_floor(vec2 x)
 {
@@ -77,8 +86,11 @@ ss_samples ss_kernel_samples(vec4 box)
     s.covered = all(greaterThanEqual(lo, ivec2(0))) && all(lessThanEqual(hi, top));
     s.lo = clamp(lo, ivec2(0), top);
     s.hi = clamp(hi, ivec2(0), top);
-    s.texel_lo = s.lo << int(s.level);
-    s.texel_hi = min(((s.hi + 1) << int(s.level)) - 1, limit);
+    // Around a contour's samples lies a rim of others whose squares the kernel does not meet. In large kernels they are left to
+    // the evaluation: they hide a corner of it at most.
+    const bool inner = SS_IS_CONTOUR && all(greaterThanEqual(b - a, vec2(SS_INNER_SAMPLES)));
+    s.texel_lo = (inner ? clamp(ss_floor(a + 0.5), ivec2(0), top) : s.lo) << int(s.level);
+    s.texel_hi = min((((inner ? clamp(ss_floor(b + 0.5), ivec2(0), top) : s.hi) + 1) << int(s.level)) - 1, limit);
     return s;
 }
 
@@ -109,6 +121,18 @@ bool ss_is_off_plane(ss_receiver r, float height, float band)
 ss_samples ss_receiver_samples(ss_receiver r, float g_hi)
 {
     return ss_kernel_samples(ss_kernel_box(r.uv, r.uv, r.g, occ.light.w - occ.light.z * r.g, g_hi));
+}
+
+// Whether all samples occlude, given that those do which classification looks at: nearer than `least` in one layer. The rim is
+// looked at only where that is so, by a loop, because the software driver runs both sides of a branch.
+bool ss_rim_occludes(ss_samples s, bool others_do, float least)
+{
+    const ivec2 lo = s.lo << int(s.level), hi = min(((s.hi + 1) << int(s.level)) - 1, ivec2(occ.size.xy) - 1);
+    const uint layers = SS_IS_CONTOUR && others_do ? ss_layers() : 0u;
+    float farthest = -3e38;
+    for (uint layer = 0u; layer < layers; layer++)
+        farthest = max(farthest, ss_range(layer, lo, hi).x);
+    return others_do && (!SS_IS_CONTOUR || farthest > least);
 }
 
 struct ss_kernel
@@ -149,9 +173,13 @@ ss_kernel ss_find_kernel(ss_receiver r, float g_hi)
         const vec2 reach = max(abs(vec2(k.samples.texel_lo & ~1) + 0.5 - r.uv), abs(vec2(k.samples.texel_hi | 1) + 0.5 - r.uv));
         const float rise = dot(abs(r.gradient), reach);
         const ivec2 size = k.samples.texel_hi - k.samples.texel_lo;
+        const float least = g + max(rise + band, 0.0);
+        const bool dark = ss_rim_occludes(
+            k.samples, k.samples.covered && range.x > least && occ.light.z * range.y < occ.light.w,
+            least + (abs(r.gradient.x) + abs(r.gradient.y)) * float(1u << k.samples.level));
         if (!(range.y > g))
             k.state = SS_STATE_LIT;
-        else if (k.samples.covered && range.x > g + max(rise + band, 0.0) && occ.light.z * range.y < occ.light.w)
+        else if (dark)
             k.state = SS_STATE_UMBRA;
         else if (max(size.x, size.y) <= 2 && (ss_flags & SS_FLAG_OVERRIDE_BIAS) == 0u &&
                  !(range.y > g + rise + ss_slack(r.g)))

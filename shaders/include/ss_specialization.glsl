@@ -14,5 +14,6 @@ layout(constant_id = SS_SPEC_STATS) const bool SS_STATS = false;
 layout(constant_id = SS_SPEC_FILTER) const bool SS_FILTER = false;
 layout(constant_id = SS_SPEC_NORMALS) const bool SS_NORMALS = false;
 layout(constant_id = SS_SPEC_LAYERED) const bool SS_LAYERED = true;
+layout(constant_id = SS_SPEC_SPARSE) const bool SS_SPARSE = false;
 
 #endif

@@ -63,7 +63,8 @@ typedef struct ss_ivec4 {
 #define SS_SPEC_FILTER 9   /* 1: keep values for the post filter */
 #define SS_SPEC_NORMALS 10 /* 1: normals are bound */
 #define SS_SPEC_LAYERED 11 /* 1: more than one layer */
-#define SS_SPEC_COUNT 12
+#define SS_SPEC_SPARSE 12 /* 1: some pixels are interpolated */
+#define SS_SPEC_COUNT 13
 
 #define SS_PRIMITIVE_PATCH 0
 #define SS_PRIMITIVE_PATCH_EXTENDED 1
@@ -80,7 +81,8 @@ typedef struct ss_ivec4 {
 #define SS_TILE_REFINEMENTS 2 /* of kernels: a third pays for pixels only */
 #define SS_MAX_REFINEMENTS 3
 /* Words per tile in the tiles buffer: state, undecided list (tile, nearest occluder), and scratch that holds the bounds
- * of the tile's columns first and the active list (pixel, nearest occluder) later. */
+ * of the tile's columns first and the active list (pixel, nearest occluder) later; pixels that may be interpolated are
+ * listed from its end. */
 #define SS_TILE_WORDS (1 + 2 + 2 * SS_TILE_PIXELS)
 #define SS_DISPATCH_WIDTH 32768 /* indirect dispatches wrap into y beyond this */
 
@@ -135,9 +137,10 @@ SS_STRUCT_END(ss_frame);
 SS_STRUCT(ss_control)
 {
     SS_UVEC4 pixels_args;   /* groups x, y, z; tiles in the undecided list */
-    SS_UVEC4 evaluate_args; /* groups x, y, z; pixels in the active list */
-    SS_UINT stats[18];      /* softsh_stats, as pairs of words; storage buffers only */
-    SS_UINT unused[6];
+    SS_UVEC4 evaluate_args[2]; /* groups x, y, z; pixels in the active list, in the first and in the second round */
+    SS_UVEC4 interpolate_args; /* groups x, y, z; pixels in the list of those that may be interpolated */
+    SS_UINT stats[20];         /* softsh_stats, as pairs of words; storage buffers only */
+    SS_UINT unused[12];
 }
 SS_STRUCT_END(ss_control);
 
@@ -150,6 +153,7 @@ SS_STRUCT_END(ss_control);
 #define SS_STAT_TILES 6
 #define SS_STAT_UNDECIDED 7
 #define SS_STAT_CLAMPED 8
+#define SS_STAT_INTERPOLATED 9
 
 /* Push constants of the passes that need some. */
 SS_STRUCT(ss_convert_push)
@@ -166,6 +170,13 @@ SS_STRUCT(ss_level_push)
     SS_UINT unused[3];
 }
 SS_STRUCT_END(ss_level_push);
+
+SS_STRUCT(ss_evaluate_push)
+{
+    SS_UINT round; /* 0, or with interpolation 1: the pixels it left */
+    SS_UINT unused[3];
+}
+SS_STRUCT_END(ss_evaluate_push);
 
 SS_STRUCT(ss_filter_push)
 {

@@ -255,7 +255,7 @@ static void view_errors(void **state)
     BAD(VIEW, in.settings.primitive = (softsh_primitive)6, INVALID, "softsh_settings::primitive");
     BAD(VIEW, in.settings.primitive = SOFTSH_PRIMITIVE_MICRORECT, UNSUPPORTED, "softsh_settings::primitive");
     BAD(VIEW, in.settings.aggregation = (softsh_aggregation)3, INVALID, "softsh_settings::aggregation");
-    BAD(VIEW, in.settings.merge = (softsh_merge)2, INVALID, "softsh_settings::merge");
+    BAD(VIEW, in.settings.merge = (softsh_merge)3, INVALID, "softsh_settings::merge");
     BAD(VIEW, in.settings.budget = 4097, INVALID, "softsh_settings::budget");
     BAD(VIEW, in.settings.min_level = 14, INVALID, "softsh_settings::min_level");
     BAD(VIEW, in.settings.filter_passes = 17, INVALID, "softsh_settings::filter_passes");

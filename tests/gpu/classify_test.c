@@ -161,8 +161,8 @@ static void check_difference(const stage *s, const softsh_settings *settings, bo
     const double slope = fabs(r->gradient[0]) + fabs(r->gradient[1]);
     bool allowed = false;
 
-    /* The same edges summed in another order. */
-    if (settings->technique == SOFTSH_TECHNIQUE_CONTOUR && fabsf(h - n) <= 1e-5f)
+    /* Section 8: corners of an eighth of a cell, in a kernel of four by four. */
+    if (settings->technique == SOFTSH_TECHNIQUE_CONTOUR && fabsf(h - n) <= 1.0f / 32.0f)
         return;
     if (h == 1.0f) {
         /* Section 8: at most two texels' rise and slack above the plane at a cell's centre, or as much as the plane

@@ -185,7 +185,8 @@ static void awkward_occluders(void **state)
          .settings = {.min_level = 2, .aggregation = SOFTSH_AGGREGATION_NEAREST}},
         {"corners, light below a texel", cross, 40, 40, 0.04, 0.04, .side = 24, .seen = 2.5},
         {"corners, level 2", cross, 39, 41, 0.2, 0.2, .side = 24, .seen = 5, .level = 2, .settings = {.min_level = 2}},
-        {"diagonals, two layers", diagonals, 40, 40, 0.4, 0.4, .layers = 2, .side = 24, .seen = 3},
+        {"diagonals, two layers", diagonals, 40, 40, 0.4, 0.4, .layers = 2, .side = 24, .seen = 3,
+         .settings = {.merge = SOFTSH_MERGE_UNION}},
         {"diagonals, darkest of two layers", diagonals, 40, 40, 0.4, 0.4, .layers = 2, .side = 24, .seen = 3,
          .settings = {.merge = SOFTSH_MERGE_MAXIMUM}},
     };

@@ -33,7 +33,8 @@ double width_of(const std::string &figure, const Figures &figures)
     const double value = figures.at(figure);
     // The mean of what a few pixels of large error add.
     const double p99 = figures.at("p99"), few = moved_errors / std::max(figures.at("error_pixels"), moved_errors);
-    if (figure == "lit" || figure == "umbra" || figure == "active" || figure == "clamped" || figure == "error_pixels")
+    if (figure == "lit" || figure == "umbra" || figure == "active" || figure == "clamped" || figure == "interpolated" ||
+        figure == "error_pixels")
         return std::ceil(0.02 * value) + moved_pixels;
     if (figure == "primitives") // of as many pixels
         return std::ceil(0.02 * value + moved_pixels * value / std::max(figures.at("active"), moved_pixels));

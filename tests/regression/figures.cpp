@@ -48,6 +48,7 @@ std::vector<Technique> technique_list()
         parse_technique("area", {"primitive=micropatch", "budget=32"}),
         parse_technique("contour", {"budget=16"}),
         parse_technique("contour", {"budget=16", "layers=1"}),
+        parse_technique("contour", {"budget=16", "layers=1", "sparse=on"}),
     };
     for (const char *variant : {"accel=hsm", "accel=mssm", "hierarchy=off", "filter=2", "merge=max"})
         list.push_back(parse_technique("bitmask", {"primitive=micropatch", "budget=32", variant}));
@@ -115,6 +116,7 @@ class Stage
         figures["tiles"] = static_cast<double>(stats.tiles);
         figures["undecided_tiles"] = static_cast<double>(stats.undecided_tiles);
         figures["clamped"] = static_cast<double>(stats.clamped);
+        figures["interpolated"] = static_cast<double>(stats.interpolated);
         figures["wide_levels_built"] = stats.wide_levels_built;
         figures["wide_levels_skipped"] = stats.wide_levels_skipped;
         const MemoryUse memory = estimator.memory();
