@@ -78,16 +78,16 @@ std::string short_name(const Technique &technique)
         name = technique.settings.count("blockers") || technique.settings.count("taps")
                    ? setting(technique, "blockers", "16") + "+" + setting(technique, "taps", "32")
                    : "PCSS";
+    } else if (technique.name == "contour") {
+        said.push_back("budget");
+        const std::string budget = setting(technique, "budget", "inf");
+        name = "c" + (budget == "inf" ? "\u221e" : budget);
     } else if (technique.name == "area" || technique.name == "bitmask") {
         said.insert(said.end(), {"primitive", "budget"});
         const std::string primitive = setting(technique, "primitive", "microquad");
         const std::string budget = setting(technique, "budget", "inf");
         name = primitive == "micropatch" ? "p" : primitive == "microquad" ? "q" : primitive;
         name += budget == "inf" ? "\u221e" : budget;
-    } else if (technique.name == "contour") {
-        said.push_back("budget");
-        const std::string budget = setting(technique, "budget", "inf");
-        name = "c" + (budget == "inf" ? "\u221e" : budget);
     } else if (technique.settings.count("samples")) {
         said.push_back("samples");
         name = setting(technique, "samples");

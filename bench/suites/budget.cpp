@@ -14,10 +14,9 @@ void run_budget(Bench &bench)
         effort = {3, 0.3};
     }
     std::vector<std::string> names = {"pcss"};
-    for (const char *primitive : {"micropatch", "microquad"})
+    for (const char *technique : {"bitmask primitive=micropatch", "bitmask primitive=microquad", "contour"})
         for (const uint32_t budget : budgets)
-            names.push_back(std::string("bitmask primitive=") + primitive +
-                            " budget=" + (budget ? std::to_string(budget) : "inf"));
+            names.push_back(std::string(technique) + " budget=" + (budget ? std::to_string(budget) : "inf"));
     const std::vector<CaseSource> sources = bench.cases({"balls"});
     const std::vector<Technique> techniques = bench.techniques(names);
     bench.begin_suite("budget", sources.size());

@@ -11,7 +11,7 @@ void run_light_size(Bench &bench)
     std::vector<std::string> scenes = {"balls", "post"};
     SceneCaseOptions size{320, 240, 512, 1};
     uint32_t rays = 256;
-    Effort effort{5, 1.0};
+    Effort effort{5, 0.6};
     std::vector<std::string> names = {
         "copy",
         "hard",
@@ -22,6 +22,7 @@ void run_light_size(Bench &bench)
         "bitmask primitive=micropatch",
         "bitmask primitive=microquad",
         "bitmask primitive=micropatch budget=16",
+        "contour",
         "auto",
     };
     if (bench.quick()) {
@@ -30,7 +31,7 @@ void run_light_size(Bench &bench)
         size = {160, 120, 256, 1};
         rays = 64;
         effort = {3, 0.3};
-        names = {"copy", "pcss", "area primitive=micropatch", "bitmask primitive=micropatch", "auto"};
+        names = {"copy", "pcss", "area primitive=micropatch", "bitmask primitive=micropatch", "contour", "auto"};
     }
     const std::vector<CaseSource> sources = bench.cases(scenes);
     const std::vector<Technique> techniques = bench.techniques(names);

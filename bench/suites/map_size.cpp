@@ -7,8 +7,13 @@ void run_map_size(Bench &bench)
     SceneCaseOptions size{320, 240, 0, 1};
     uint32_t rays = 256;
     Effort effort{5, 1.0};
-    std::vector<std::string> names = {
-        "copy", "hard", "pcss", "march samples=16", "bitmask primitive=micropatch budget=16", "auto"};
+    std::vector<std::string> names = {"copy",
+                                      "hard",
+                                      "pcss",
+                                      "march samples=16",
+                                      "bitmask primitive=micropatch budget=16",
+                                      "contour budget=16 sparse=on",
+                                      "auto"};
     if (bench.quick()) {
         maps = {256, 512, 1024};
         size = {160, 120, 0, 1};

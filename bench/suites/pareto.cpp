@@ -34,18 +34,22 @@ const std::vector<std::string> contestants = {
     "embree samples=256",
     "area layers=1 primitive=micropatch",
     "bitmask layers=1 primitive=micropatch budget=8",
-    "bitmask layers=1 primitive=micropatch budget=12",
     "bitmask layers=1 primitive=micropatch budget=16",
-    "bitmask layers=1 primitive=micropatch budget=24",
     "bitmask layers=1 primitive=micropatch budget=32",
     "bitmask layers=1 primitive=micropatch",
     "bitmask layers=1 primitive=micropatch pattern=8x8 budget=8",
-    "bitmask layers=1 primitive=micropatch pattern=8x8 budget=12",
-    "bitmask layers=1 primitive=micropatch pattern=8x8 budget=16",
+    "bitmask layers=1 primitive=micropatch budget=16 sparse=on",
     "bitmask layers=1 primitive=microquad budget=16",
-    "bitmask layers=1 primitive=microquad budget=32",
     "bitmask layers=1 primitive=microquad",
-    "bitmask layers=1 accel=hsm primitive=micropatch budget=16",
+    "contour layers=1 budget=8",
+    "contour layers=1 budget=16",
+    "contour layers=1 budget=32",
+    "contour layers=1",
+    "contour layers=1 budget=8 sparse=on",
+    "contour layers=1 budget=12 sparse=on",
+    "contour layers=1 budget=16 sparse=on",
+    "contour layers=1 budget=12 sparse=on accel=hsm",
+    "contour layers=1 sparse=on",
     "auto layers=1",
     "auto",
 };
@@ -62,6 +66,9 @@ const std::vector<std::string> quick_contestants = {
     "bitmask layers=1 primitive=micropatch budget=8",
     "bitmask layers=1 primitive=micropatch budget=16",
     "bitmask layers=1 primitive=microquad budget=16",
+    "contour layers=1 budget=8 sparse=on",
+    "contour layers=1 budget=16",
+    "contour layers=1 budget=16 sparse=on",
     "auto",
 };
 
@@ -208,7 +215,7 @@ void run_pareto(Bench &bench)
     if (bench.quick())
         sizes = {{"balls", 160, 120}};
     const std::vector<Technique> techniques = bench.techniques(bench.quick() ? quick_contestants : contestants);
-    const Effort effort = bench.quick() ? Effort{3, 0.5} : Effort{7, 2.0};
+    const Effort effort = bench.quick() ? Effort{3, 0.5} : Effort{5, 1.5};
     const uint32_t rays = bench.quick() ? 256 : 1024;
     const size_t first = bench.report().rows.size();
 

@@ -7,7 +7,8 @@ void run_resolution(Bench &bench)
         {160, 120, 512, 1}, {320, 240, 512, 1}, {640, 480, 512, 1}, {1280, 960, 512, 1}};
     uint32_t rays = 64; // the picture's size changes time, hardly error
     Effort effort{5, 1.5};
-    std::vector<std::string> names = {"copy", "hard", "pcss", "bitmask primitive=micropatch budget=16", "auto"};
+    std::vector<std::string> names = {
+        "copy", "hard", "pcss", "bitmask primitive=micropatch budget=16", "contour budget=16 sparse=on", "auto"};
     if (bench.quick()) {
         sizes = {{80, 60, 256, 1}, {160, 120, 256, 1}, {320, 240, 256, 1}};
         rays = 16;

@@ -273,7 +273,7 @@ void budget_work(Bench &bench, const SceneCaseOptions &size, const Effort &effor
 void run_seeds(Bench &bench)
 {
     SceneCaseOptions size{640, 480, 512, 2};
-    Effort effort{7, 1.0};
+    Effort effort{5, 0.6};
     uint32_t rays = 256;
     if (bench.quick()) {
         size = {120, 90, 256, 2};

@@ -170,6 +170,8 @@ void run_stability(Bench &bench)
         "bitmask primitive=micropatch budget=16",
         "bitmask primitive=micropatch budget=8",
         "bitmask primitive=microquad budget=16",
+        "contour budget=16",
+        "contour budget=16 sparse=on",
         "auto",
     };
     if (bench.quick()) {

@@ -9,7 +9,7 @@ from . import rows
 # Beside the truth, as far as there are pictures of them.
 SHOWN = [("pcss", {}), ("pcss", {"near": "fit"}), ("march", {"samples": "16", "near": "fit"}),
          ("embree", {"samples": "16"}),
-         ("bitmask", {"layers": "1", "primitive": "micropatch", "budget": "8"}),
+         ("contour", {"layers": "1", "budget": "8"}),
          ("bitmask", {"layers": "1", "primitive": "micropatch", "budget": "16"}), ("auto", {}),
          ("march", {"samples": "16"}), ("area", {"layers": "1", "primitive": "micropatch"}),
          ("average", {"samples": "16"}), ("hard", {}), ("pcf", {})]

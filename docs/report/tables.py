@@ -235,6 +235,7 @@ SHORT = [("hard", {}), ("pcf", {}), ("pcss", {}), ("pcss", {"near": "fit"}), ("m
          ("bitmask", {"layers": "1", "primitive": "micropatch", "budget": "8"}),
          ("bitmask", {"layers": "1", "primitive": "micropatch", "budget": "16"}),
          ("bitmask", {"layers": "1", "primitive": "microquad", "budget": "16"}),
+         ("contour", {"layers": "1", "budget": "16"}), ("contour", {"layers": "1", "budget": "16", "sparse": "on"}),
          ("bitmask", {"layers": "1", "primitive": "micropatch"}), ("auto", {"layers": "1"}), ("auto", {})]
 
 
