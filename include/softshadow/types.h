@@ -208,7 +208,7 @@ typedef struct softsh_stats {
     uint64_t
         lit; /* found lit by classification (or by the one comparison of a light without size); background included */
     uint64_t umbra;             /* found dark likewise */
-    uint64_t active;            /* evaluated one by one */
+    uint64_t active;            /* neither: evaluated one by one, or interpolated */
     uint64_t nodes;             /* four per query of the hierarchy and layer */
     uint64_t primitives;        /* micro-occluders, or edges of contours, projected */
     uint64_t tiles;             /* 8 x 8 pixel tiles in the render area */
