@@ -78,7 +78,9 @@ vec2 ss_range(uint layer, ivec2 lo, ivec2 hi)
         const int join = int(occ.levels.y);
         const ivec2 a = lo >> join, b = hi >> join;
         const int cells = max(b.x - a.x, b.y - a.y) + 1, k = findMSB(cells);
-        if (k >= 1 && k <= int(plan.built.x)) {
+        // Rounding to cells of 2^join texels loosens small rectangles more than the pyramid does.
+        const int least = join > 0 ? 2 : 1;
+        if (k >= least && k <= int(plan.built.x)) {
             // A wide texel at x covers [x - h, x + h - 1]; a side shorter than 2 h is covered by one in its middle.
             const int h = 1 << (k - 1);
             const ivec2 middle = (a + b + 1) >> 1;
