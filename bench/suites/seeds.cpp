@@ -115,7 +115,7 @@ void budget_cost(Bench &bench, const SceneCaseOptions &size, const Effort &effor
         met += value >= 0.9 * least && value <= 1.1 * most;
         return value;
     };
-    for (const int budget : {18, 20, 12}) {
+    for (const int budget : bench.quick() ? std::vector<int>{18} : std::vector<int>{18, 20, 12}) {
         const std::string common = text(" layers=1 aggregation=nearest budget=%d", budget);
         const std::string area = "area primitive=micropatch accel=hsm" + common,
                           area_mssm = "area primitive=micropatch accel=mssm" + common,
@@ -205,7 +205,8 @@ void quality(Bench &bench, const SceneCaseOptions &size, uint32_t rays)
             claim.why += (claim.why.empty() ? "not: " : "; ") + what;
         }
     };
-    for (const char *scene : {"balls", "silhouette"}) {
+    for (const char *scene :
+         bench.quick() ? std::vector<const char *>{"balls"} : std::vector<const char *>{"balls", "silhouette"}) {
         const auto bench_case = bench.load({CaseSource::Kind::scene, scene}, size, rays);
         const std::string area = "area layers=1 primitive=micropatch", patch = "bitmask layers=1 primitive=micropatch",
                           quad = "bitmask layers=1 primitive=microquad", coarse = quad + " pattern=16x16",
@@ -284,7 +285,7 @@ void run_seeds(Bench &bench)
     if (!bench.quick())
         small.width = 320, small.height = 240;
 
-    bench.begin_suite("seeds", bench.quick() ? 9 : 11);
+    bench.begin_suite("seeds", bench.quick() ? 6 : 11);
     bitmask_cost(bench, size, effort);
     budget_cost(bench, size, effort);
     build_cost(bench, effort);
