@@ -23,6 +23,15 @@ static softsh_result check_limits(const softsh_occluders *o)
                                 o->max_layers, o->max_extent.width, o->max_extent.height,
                                 (unsigned long long)(ranges[i].size >> 20), ranges[i].what,
                                 (unsigned long long)(context->limits.maxStorageBufferRange >> 20));
+    const VkDeviceSize depths = o->layout.fan_depth.size / sizeof(float),
+                       pairs = o->layout.ranges.size / (2 * sizeof(float));
+    const VkDeviceSize texels = depths > pairs ? depths : pairs;
+    if (texels > context->limits.maxTexelBufferElements)
+        return softshi_fail(context, SOFTSH_ERROR_LIMIT,
+                            "softsh_occluders_info: %u layers of %u x %u take %llu texels, the device's "
+                            "maxTexelBufferElements is %u",
+                            o->max_layers, o->max_extent.width, o->max_extent.height, (unsigned long long)texels,
+                            context->limits.maxTexelBufferElements);
     return SOFTSH_SUCCESS;
 }
 
@@ -36,15 +45,14 @@ static softsh_result create_sets(softsh_occluders *o, uint32_t recordings)
                             o->io_set_count);
     const uint32_t n = o->io_set_count;
     const VkDescriptorPoolSize sizes[] = {
-        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1 + n},
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 3 + 3 * n},
-        {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 2 * n},
-        {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, n},
+        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1 + n},   {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 3 + 3 * n},
+        {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 2 * n},    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, n},
+        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 2},
     };
     const VkDescriptorPoolCreateInfo pool_info = {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
         .maxSets = 1 + n,
-        .poolSizeCount = 4,
+        .poolSizeCount = sizeof sizes / sizeof *sizes,
         .pPoolSizes = sizes,
     };
     VkResult result = context->vk.CreateDescriptorPool(context->device, &pool_info, context->allocator, &o->pool);
@@ -65,7 +73,24 @@ static softsh_result create_sets(softsh_occluders *o, uint32_t recordings)
     return result == VK_SUCCESS ? SOFTSH_SUCCESS : softshi_fail_vulkan(context, result, "vkAllocateDescriptorSets");
 }
 
-/* Once the memory is there: the descriptors that never change. */
+static softsh_result create_texels(softsh_occluders *o, const softshi_range *range, VkFormat format, VkBufferView *out)
+{
+    const softsh_context *context = o->context;
+    const VkBufferViewCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
+        .buffer = o->block.buffer,
+        .format = format,
+        .offset = range->offset,
+        .range = range->size,
+    };
+    const VkResult result = context->vk.CreateBufferView(context->device, &info, context->allocator, out);
+    if (result == VK_SUCCESS)
+        return SOFTSH_SUCCESS;
+    *out = VK_NULL_HANDLE;
+    return softshi_fail_vulkan(context, result, "vkCreateBufferView");
+}
+
+/* The descriptors that never change. */
 static void write_descriptors(const softsh_occluders *o)
 {
     const softsh_context *context = o->context;
@@ -79,6 +104,8 @@ static void write_descriptors(const softsh_occluders *o)
         {SS_BIND_FAN_DEPTH, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, o->layout.fan_depth},
         {SS_BIND_RANGES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, o->layout.ranges},
         {SS_BIND_PLAN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, plan},
+        {SS_BIND_FAN_DEPTH_TEXELS, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, o->layout.fan_depth},
+        {SS_BIND_RANGES_TEXELS, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, o->layout.ranges},
     };
     VkDescriptorBufferInfo buffers[SS_OCCLUDER_BINDINGS];
     VkWriteDescriptorSet writes[SS_OCCLUDER_BINDINGS];
@@ -91,9 +118,22 @@ static void write_descriptors(const softsh_occluders *o)
             .descriptorCount = 1,
             .descriptorType = list[i].type,
             .pBufferInfo = &buffers[i],
+            .pTexelBufferView = list[i].binding == SS_BIND_RANGES_TEXELS ? &o->ranges_texels : &o->fan_depth_texels,
         };
     }
     context->vk.UpdateDescriptorSets(context->device, SS_OCCLUDER_BINDINGS, writes, 0, NULL);
+}
+
+/* Once the memory is there. */
+static softsh_result finish(softsh_occluders *o)
+{
+    softsh_result result = create_texels(o, &o->layout.fan_depth, VK_FORMAT_R32_SFLOAT, &o->fan_depth_texels);
+    if (result == SOFTSH_SUCCESS)
+        result = create_texels(o, &o->layout.ranges, VK_FORMAT_R32G32_SFLOAT, &o->ranges_texels);
+    o->block.ready = result == SOFTSH_SUCCESS;
+    if (result == SOFTSH_SUCCESS)
+        write_descriptors(o);
+    return result;
 }
 
 softsh_result softsh_occluders_create(softsh_context *context, const softsh_occluders_info *info,
@@ -130,7 +170,7 @@ softsh_result softsh_occluders_create(softsh_context *context, const softsh_occl
     if (result == SOFTSH_SUCCESS && info->memory_mode == SOFTSH_MEMORY_LIBRARY) {
         result = softshi_block_allocate(context, &o->block);
         if (result == SOFTSH_SUCCESS)
-            write_descriptors(o);
+            result = finish(o);
     }
     if (result != SOFTSH_SUCCESS) {
         softsh_occluders_destroy(o);
@@ -148,6 +188,10 @@ void softsh_occluders_destroy(softsh_occluders *o)
     softshi_hierarchy_destroy(o);
     if (o->pool)
         context->vk.DestroyDescriptorPool(context->device, o->pool, context->allocator);
+    if (o->fan_depth_texels)
+        context->vk.DestroyBufferView(context->device, o->fan_depth_texels, context->allocator);
+    if (o->ranges_texels)
+        context->vk.DestroyBufferView(context->device, o->ranges_texels, context->allocator);
     softshi_block_destroy(context, &o->block);
     if (o->io_sets)
         softshi_host_free(context->allocator, o->io_sets);
@@ -172,7 +216,5 @@ softsh_result softsh_occluders_bind_memory(softsh_occluders *o, VkDeviceMemory m
         return SOFTSH_ERROR_INVALID_ARGUMENT;
     const softsh_result result =
         softshi_block_bind(o->context, &o->block, memory, offset, size, "softsh_occluders_bind_memory");
-    if (result == SOFTSH_SUCCESS)
-        write_descriptors(o);
-    return result;
+    return result == SOFTSH_SUCCESS ? finish(o) : result;
 }

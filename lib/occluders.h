@@ -22,6 +22,7 @@ struct softsh_occluders {
     uint32_t join_texels; /* as softshi_layout_occluders takes it */
     softshi_occluder_layout layout;
     softshi_block block;
+    VkBufferView fan_depth_texels, ranges_texels;
     VkDescriptorPool pool;
     VkDescriptorSet set;
     VkDescriptorSet *io_sets; /* a ring: one per layer of each recording */

@@ -14,6 +14,8 @@
 #define SOFTSHI_DEVICE_FUNCTIONS(X)                                                                                    \
     X(CreateBuffer)                                                                                                    \
     X(DestroyBuffer)                                                                                                   \
+    X(CreateBufferView)                                                                                                \
+    X(DestroyBufferView)                                                                                               \
     X(GetBufferMemoryRequirements)                                                                                     \
     X(BindBufferMemory)                                                                                                \
     X(AllocateMemory)                                                                                                  \

@@ -132,7 +132,7 @@ bool lies_under_plane(tile_bounds t, uint layer, ivec2 lo, ivec2 hi)
     bool under = side <= MAX_PLANE_SIDE && planar;
     for (int y = a.y; y <= b.y && under; y++) {
         for (int x = a.x; x <= b.x; x++) {
-            const float g = ranges[base + uint(y * row + x)].y;
+            const float g = ss_range_at(base + uint(y * row + x)).y;
             under = under && g <= dot(t.plane.xy, (vec2(x, y) + 0.5) * cell) + t.plane.z + footprint;
         }
     }

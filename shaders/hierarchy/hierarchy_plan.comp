@@ -1,8 +1,10 @@
 #version 460
+#extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 // How many wide levels the largest possible kernel can ask for, given the light and the map's actual depth range. The rest
 // are dispatched with zero groups; a query above what was built falls back on the pyramid's root.
 #include "ss_types.h"
+#include "ss_occluder_texels.glsl"
 
 layout(local_size_x = 1) in;
 
@@ -14,17 +16,13 @@ layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_PLAN, std430) writeonly buffer 
 {
     ss_plan plan;
 };
-layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_RANGES, std430) readonly buffer ss_ranges_buffer
-{
-    vec2 ranges[];
-};
 
 void main()
 {
     float nearest = occ.depths.w, farthest = occ.depths.w;
     for (uint layer = 0u; layer < occ.size.z; layer++) {
         const uint top = occ.levels.x;
-        const vec2 range = ranges[layer * occ.strides.y + occ.pyramid[top].x];
+        const vec2 range = ss_range_at(layer * occ.strides.y + occ.pyramid[top].x);
         nearest = max(nearest, range.y);
         farthest = min(farthest, range.x);
     }

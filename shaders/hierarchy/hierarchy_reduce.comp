@@ -1,19 +1,16 @@
 #version 460
+#extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 // Two levels of the min/max pyramid (HSM; Guennebaud et al. 2006) from the one below them, of all layers. Odd sizes: the last
 // texel of a level covers what is left of its block.
 #include "ss_types.h"
+#include "ss_occluder_texels.glsl"
 
 layout(local_size_x = 32, local_size_y = 4) in;
 
 layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_OCCLUDERS, std140) uniform ss_occluders_buffer
 {
     ss_occluders occ;
-};
-// One binding as two variables: what a pass reads and what it writes are apart, and validation can tell them apart as well.
-layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_RANGES, std430) readonly buffer ss_ranges_buffer
-{
-    vec2 ranges[];
 };
 layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_RANGES, std430) writeonly buffer ss_made_buffer
 {
@@ -37,8 +34,8 @@ void main()
     for (int i = 0; i < 4; i++) {
         const ivec2 block = 2 * at + ivec2(i & 1, i >> 1);
         const ivec2 a = min(2 * block, last_below), b = min(2 * block + 1, last_below);
-        const vec2 p = ranges[below + uint(a.y * row_below + a.x)], q = ranges[below + uint(a.y * row_below + b.x)];
-        const vec2 r = ranges[below + uint(b.y * row_below + a.x)], s = ranges[below + uint(b.y * row_below + b.x)];
+        const vec2 p = ss_range_at(below + uint(a.y * row_below + a.x)), q = ss_range_at(below + uint(a.y * row_below + b.x));
+        const vec2 r = ss_range_at(below + uint(b.y * row_below + a.x)), s = ss_range_at(below + uint(b.y * row_below + b.x));
         const vec2 range = vec2(min(min(p.x, q.x), min(r.x, s.x)), max(max(p.y, q.y), max(r.y, s.y)));
         if (all(lessThanEqual(block, last)))
             made[level + uint(block.y * row + block.x)] = range;

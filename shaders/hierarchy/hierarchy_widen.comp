@@ -1,23 +1,16 @@
 #version 460
+#extension GL_EXT_samplerless_texture_functions : require
 #extension GL_GOOGLE_include_directive : require
 // One MSSM level (Schwarz and Stamminger 2007, section 5) of all layers: the range of 2^i x 2^i cells around each cell, from
 // four texels of the level below. The cells are texels of pyramid level `join`: 0 gives the MSSM, more a YSM (2008, section 6).
 #include "ss_types.h"
+#include "ss_occluder_texels.glsl"
 
 layout(local_size_x = 32, local_size_y = 4) in;
 
 layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_OCCLUDERS, std140) uniform ss_occluders_buffer
 {
     ss_occluders occ;
-};
-layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_FAN_DEPTH, std430) readonly buffer ss_fan_depth_buffer
-{
-    float fan_depth[];
-};
-// One binding as two variables: what a pass reads and what it writes are apart, and validation can tell them apart as well.
-layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_RANGES, std430) readonly buffer ss_ranges_buffer
-{
-    vec2 ranges[];
 };
 layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_RANGES, std430) writeonly buffer ss_made_buffer
 {
@@ -29,7 +22,6 @@ layout(push_constant) uniform ss_push
     ss_level_push push;
 };
 
-
 vec2 unite(vec2 a, vec2 b)
 {
     return vec2(min(a.x, b.x), max(a.y, b.y));
@@ -38,7 +30,7 @@ vec2 unite(vec2 a, vec2 b)
 // A texel of the level below.
 vec2 load(uint i)
 {
-    return FROM_FAN_DEPTH ? vec2(fan_depth[i]) : ranges[i];
+    return FROM_FAN_DEPTH ? vec2(ss_fan_depth_at(i)) : ss_range_at(i);
 }
 
 void main()

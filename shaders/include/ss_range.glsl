@@ -17,14 +17,14 @@ ivec2 ss_level_size(uint level)
 float ss_load_fan_depth(uint layer, ivec2 texel)
 {
     const ivec2 t = clamp(texel, ivec2(0), ivec2(occ.size.xy) - 1);
-    return fan_depth[layer * occ.strides.x + uint(t.y) * occ.size.x + uint(t.x)];
+    return ss_fan_depth_at(layer * occ.strides.x + uint(t.y) * occ.size.x + uint(t.x));
 }
 
 vec2 ss_load_pyramid(uint layer, uint level, ivec2 texel)
 {
     const ivec2 size = ss_level_size(level);
     const ivec2 t = clamp(texel, ivec2(0), size - 1);
-    return ranges[layer * occ.strides.y + ss_level_offset(level) + uint(t.y * size.x + t.x)];
+    return ss_range_at(layer * occ.strides.y + ss_level_offset(level) + uint(t.y * size.x + t.x));
 }
 
 vec2 ss_root(uint layer)
@@ -47,8 +47,9 @@ struct ss_corners
 
 vec2 ss_range_corners(ss_corners c)
 {
-    return ss_unite(ss_unite(ranges[c.base + uint(c.a.y * c.row + c.a.x)], ranges[c.base + uint(c.a.y * c.row + c.b.x)]),
-                    ss_unite(ranges[c.base + uint(c.b.y * c.row + c.a.x)], ranges[c.base + uint(c.b.y * c.row + c.b.x)]));
+    const uint a = c.base + uint(c.a.y * c.row), b = c.base + uint(c.b.y * c.row);
+    return ss_unite(ss_unite(ss_range_at(a + uint(c.a.x)), ss_range_at(a + uint(c.b.x))),
+                    ss_unite(ss_range_at(b + uint(c.a.x)), ss_range_at(b + uint(c.b.x))));
 }
 
 // Those of the pyramid that cover texels lo to hi. Level 0 is never read: a branch costs more than the texels it saves.

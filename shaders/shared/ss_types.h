@@ -34,11 +34,12 @@ typedef struct ss_ivec4 {
 /* Descriptor sets and bindings; every pipeline uses the same two set layouts. */
 #define SS_SET_OCCLUDERS 0
 #define SS_BIND_OCCLUDERS 0 /* uniform: ss_occluders and ss_plan */
-#define SS_BIND_FAN_DEPTH 1 /* float per texel and layer: level 0 */
-#define SS_BIND_RANGES 2 /* vec2 (farthest, nearest) per texel: a layer's HSM levels 1 to top, its MSSM levels 1 to n  \
-                          */
+#define SS_BIND_FAN_DEPTH 1 /* where it is written, float per texel and layer: level 0 */
+#define SS_BIND_RANGES 2 /* likewise, vec2 (farthest, nearest) per texel: a layer's HSM levels 1 to top, its MSSM levels 1 to n */
 #define SS_BIND_PLAN 3   /* ss_plan, where it is written */
-#define SS_OCCLUDER_BINDINGS 4
+#define SS_BIND_FAN_DEPTH_TEXELS 4 /* where both are read: as texel buffers */
+#define SS_BIND_RANGES_TEXELS 5
+#define SS_OCCLUDER_BINDINGS 6
 
 #define SS_SET_IO 1
 #define SS_BIND_DEPTH 0      /* sampled: the map (build) or the camera's depth */

@@ -146,6 +146,8 @@ static bool dies(const char *kind, uint64_t handle)
 
 CREATE(Buffer, CreateBuffer, VkBufferCreateInfo)
 DESTROY(Buffer, DestroyBuffer)
+CREATE(BufferView, CreateBufferView, VkBufferViewCreateInfo)
+DESTROY(BufferView, DestroyBufferView)
 CREATE(DeviceMemory, AllocateMemory, VkMemoryAllocateInfo)
 DESTROY(DeviceMemory, FreeMemory)
 CREATE(ShaderModule, CreateShaderModule, VkShaderModuleCreateInfo)
@@ -263,6 +265,8 @@ static VKAPI_ATTR VkResult VKAPI_CALL wrap_AllocateDescriptorSets(VkDevice devic
 #define WRAPPED(X)                                                                                                     \
     X(CreateBuffer)                                                                                                    \
     X(DestroyBuffer)                                                                                                   \
+    X(CreateBufferView)                                                                                                \
+    X(DestroyBufferView)                                                                                               \
     X(AllocateMemory)                                                                                                  \
     X(FreeMemory)                                                                                                      \
     X(CreateShaderModule)                                                                                              \
