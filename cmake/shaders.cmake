@@ -1,6 +1,7 @@
 # The shader manifest. A pass's name is its file name; adding a pass means adding its line here.
 set(SOFTSHADOW_SHADERS
     hierarchy/hierarchy_convert
+    hierarchy/hierarchy_sample
     hierarchy/hierarchy_reduce
     hierarchy/hierarchy_plan
     hierarchy/hierarchy_widen

@@ -97,10 +97,11 @@ static void fill_header(const softsh_build_info *info, const build_plan *plan, s
     out->levels = (ss_uvec4){layout->top, layout->join, layout->wide_levels,
                              softshi_level_size(plan->extent.width, layout->join)};
     /* Creation made sure that all of it can be counted in 32 bits. */
-    out->strides = (ss_uvec4){plan->extent.width * plan->extent.height, (uint32_t)layout->layer_texels,
-                              layout->wide_offset, layout->wide_texels};
-    for (uint32_t i = 1; i <= layout->top; i++)
-        out->pyramid[i] = (ss_uvec4){layout->offsets[i], softshi_level_size(plan->extent.width, i), 0, 0};
+    out->strides = (ss_uvec4){(uint32_t)layout->layer_quads, (uint32_t)layout->layer_texels, layout->wide_offset,
+                              layout->wide_texels};
+    for (uint32_t i = 0; i <= layout->top; i++)
+        out->pyramid[i] = (ss_uvec4){layout->offsets[i], softshi_level_size(plan->extent.width, i), layout->quads[i],
+                                     softshi_level_quads(plan->extent.width, i)};
 }
 
 static void write_map_descriptor(const softsh_context *context, VkDescriptorSet set, const softsh_map *map)

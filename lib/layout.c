@@ -13,6 +13,11 @@ static softshi_range append(VkDeviceSize *end, VkDeviceSize size)
     return range;
 }
 
+uint32_t softshi_level_quads(uint32_t texels, uint32_t level)
+{
+    return (softshi_level_size(texels, level) + 3) / 4;
+}
+
 uint32_t softshi_level_size(uint32_t texels, uint32_t level)
 {
     return (uint32_t)(((uint64_t)texels + (UINT64_C(1) << level) - 1) >> level);
@@ -40,6 +45,10 @@ void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_
         out->offsets[i] = out->wide_offset;
         out->wide_offset += softshi_level_size(extent.width, i) * softshi_level_size(extent.height, i);
     }
+    for (uint32_t i = 0; i <= out->top; i++) {
+        out->quads[i] = (uint32_t)out->layer_quads;
+        out->layer_quads += (VkDeviceSize)softshi_level_quads(extent.width, i) * softshi_level_size(extent.height, i);
+    }
     out->join = out->top;
     if (join_texels > 0) {
         out->join = 0;
@@ -54,7 +63,7 @@ void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_
     out->layer_texels = out->wide_offset + (VkDeviceSize)out->wide_levels * out->wide_texels;
     VkDeviceSize end = 0;
     out->header = append(&end, sizeof(ss_occluders) + sizeof(ss_plan));
-    out->fan_depth = append(&end, (VkDeviceSize)extent.width * extent.height * layers * sizeof(float));
+    out->fan_depth = append(&end, out->layer_quads * layers * 4 * sizeof(float));
     out->ranges = append(&end, out->layer_texels * layers * 2 * sizeof(float));
     out->buffer_size = end;
 }

@@ -11,6 +11,8 @@ typedef struct softshi_range {
 
 /* Texels of a side at a pyramid level: rounded up. */
 uint32_t softshi_level_size(uint32_t texels, uint32_t level);
+/* Quads of a row of fan depths there. */
+uint32_t softshi_level_quads(uint32_t texels, uint32_t level);
 
 /* One light's structures for maps of `extent`. */
 typedef struct softshi_occluder_layout {
@@ -19,6 +21,8 @@ typedef struct softshi_occluder_layout {
     VkDeviceSize layer_texels;       /* of `ranges`: a layer's pyramid, then its wide levels */
     uint32_t top;                    /* levels above level 0 */
     uint32_t offsets[SS_MAX_LEVELS]; /* first texel of a pyramid level */
+    VkDeviceSize layer_quads;        /* of `fan_depth`, four depths each: a layer's levels 0 to top */
+    uint32_t quads[SS_MAX_LEVELS];   /* first quad of a level's sampled fan depths */
     uint32_t join;                   /* pyramid level the wide part starts from; `top` without one */
     uint32_t wide_levels;            /* 0 without a wide part */
     uint32_t wide_offset;            /* first texel of wide level 1 */

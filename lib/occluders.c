@@ -45,9 +45,9 @@ static softsh_result create_sets(softsh_occluders *o, uint32_t recordings)
                             o->io_set_count);
     const uint32_t n = o->io_set_count;
     const VkDescriptorPoolSize sizes[] = {
-        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1 + n},   {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 3 + 3 * n},
+        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1 + n},   {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1 + 3 * n},
         {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 2 * n},    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, n},
-        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 2},
+        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 3}, {VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, 2},
     };
     const VkDescriptorPoolCreateInfo pool_info = {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
@@ -94,42 +94,46 @@ static softsh_result create_texels(softsh_occluders *o, const softshi_range *ran
 static void write_descriptors(const softsh_occluders *o)
 {
     const softsh_context *context = o->context;
-    const softshi_range plan = {o->layout.header.offset + sizeof(ss_occluders), sizeof(ss_plan)};
+    const VkDescriptorBufferInfo header = {o->block.buffer, o->layout.header.offset, o->layout.header.size};
+    const VkDescriptorBufferInfo plan = {o->block.buffer, o->layout.header.offset + sizeof(ss_occluders),
+                                         sizeof(ss_plan)};
     const struct {
         uint32_t binding;
         VkDescriptorType type;
-        softshi_range range;
+        const VkDescriptorBufferInfo *buffer;
+        const VkBufferView *view;
     } list[SS_OCCLUDER_BINDINGS] = {
-        {SS_BIND_OCCLUDERS, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, o->layout.header},
-        {SS_BIND_FAN_DEPTH, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, o->layout.fan_depth},
-        {SS_BIND_RANGES, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, o->layout.ranges},
-        {SS_BIND_PLAN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, plan},
-        {SS_BIND_FAN_DEPTH_TEXELS, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, o->layout.fan_depth},
-        {SS_BIND_RANGES_TEXELS, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, o->layout.ranges},
+        {SS_BIND_OCCLUDERS, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, &header, NULL},
+        {SS_BIND_PLAN, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, &plan, NULL},
+        {SS_BIND_MADE_DEPTH, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, NULL, &o->depth_quads},
+        {SS_BIND_MADE_RANGES, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, NULL, &o->ranges},
+        {SS_BIND_DEPTHS, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, NULL, &o->depths},
+        {SS_BIND_DEPTH_QUADS, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, NULL, &o->depth_quads},
+        {SS_BIND_RANGES, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, NULL, &o->ranges},
     };
-    VkDescriptorBufferInfo buffers[SS_OCCLUDER_BINDINGS];
     VkWriteDescriptorSet writes[SS_OCCLUDER_BINDINGS];
-    for (uint32_t i = 0; i < SS_OCCLUDER_BINDINGS; i++) {
-        buffers[i] = (VkDescriptorBufferInfo){o->block.buffer, list[i].range.offset, list[i].range.size};
+    for (uint32_t i = 0; i < SS_OCCLUDER_BINDINGS; i++)
         writes[i] = (VkWriteDescriptorSet){
             .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
             .dstSet = o->set,
             .dstBinding = list[i].binding,
             .descriptorCount = 1,
             .descriptorType = list[i].type,
-            .pBufferInfo = &buffers[i],
-            .pTexelBufferView = list[i].binding == SS_BIND_RANGES_TEXELS ? &o->ranges_texels : &o->fan_depth_texels,
+            .pBufferInfo = list[i].buffer,
+            .pTexelBufferView = list[i].view,
         };
-    }
     context->vk.UpdateDescriptorSets(context->device, SS_OCCLUDER_BINDINGS, writes, 0, NULL);
 }
 
 /* Once the memory is there. */
 static softsh_result finish(softsh_occluders *o)
 {
-    softsh_result result = create_texels(o, &o->layout.fan_depth, VK_FORMAT_R32_SFLOAT, &o->fan_depth_texels);
+    const softshi_occluder_layout *layout = &o->layout;
+    softsh_result result = create_texels(o, &layout->fan_depth, VK_FORMAT_R32_SFLOAT, &o->depths);
     if (result == SOFTSH_SUCCESS)
-        result = create_texels(o, &o->layout.ranges, VK_FORMAT_R32G32_SFLOAT, &o->ranges_texels);
+        result = create_texels(o, &layout->fan_depth, VK_FORMAT_R32G32B32A32_SFLOAT, &o->depth_quads);
+    if (result == SOFTSH_SUCCESS)
+        result = create_texels(o, &layout->ranges, VK_FORMAT_R32G32_SFLOAT, &o->ranges);
     o->block.ready = result == SOFTSH_SUCCESS;
     if (result == SOFTSH_SUCCESS)
         write_descriptors(o);
@@ -188,10 +192,10 @@ void softsh_occluders_destroy(softsh_occluders *o)
     softshi_hierarchy_destroy(o);
     if (o->pool)
         context->vk.DestroyDescriptorPool(context->device, o->pool, context->allocator);
-    if (o->fan_depth_texels)
-        context->vk.DestroyBufferView(context->device, o->fan_depth_texels, context->allocator);
-    if (o->ranges_texels)
-        context->vk.DestroyBufferView(context->device, o->ranges_texels, context->allocator);
+    const VkBufferView texels[] = {o->depths, o->depth_quads, o->ranges};
+    for (size_t i = 0; i < sizeof texels / sizeof *texels; i++)
+        if (texels[i])
+            context->vk.DestroyBufferView(context->device, texels[i], context->allocator);
     softshi_block_destroy(context, &o->block);
     if (o->io_sets)
         softshi_host_free(context->allocator, o->io_sets);

@@ -11,7 +11,7 @@
 enum { SOFTSHI_NAME_SIZE = 64 };
 
 typedef struct softshi_hierarchy_pipelines {
-    softshi_pipeline convert, reduce, plan, widen_first, widen;
+    softshi_pipeline convert, sample, reduce, plan, widen_first, widen;
 } softshi_hierarchy_pipelines;
 
 struct softsh_occluders {
@@ -22,7 +22,7 @@ struct softsh_occluders {
     uint32_t join_texels; /* as softshi_layout_occluders takes it */
     softshi_occluder_layout layout;
     softshi_block block;
-    VkBufferView fan_depth_texels, ranges_texels;
+    VkBufferView depths, depth_quads, ranges; /* fan depths one by one and by four; ranges */
     VkDescriptorPool pool;
     VkDescriptorSet set;
     VkDescriptorSet *io_sets; /* a ring: one per layer of each recording */

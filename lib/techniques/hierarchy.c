@@ -18,9 +18,9 @@ softsh_result softshi_hierarchy_create(softsh_occluders *o)
         uint32_t from_fan_depth;
         softshi_pipeline *pipeline;
     } list[] = {
-        {SOFTSHI_SHADER_HIERARCHY_CONVERT, 0, &p->convert}, {SOFTSHI_SHADER_HIERARCHY_REDUCE, 0, &p->reduce},
-        {SOFTSHI_SHADER_HIERARCHY_PLAN, 0, &p->plan},       {SOFTSHI_SHADER_HIERARCHY_WIDEN, 1, &p->widen_first},
-        {SOFTSHI_SHADER_HIERARCHY_WIDEN, 0, &p->widen},
+        {SOFTSHI_SHADER_HIERARCHY_CONVERT, 0, &p->convert},   {SOFTSHI_SHADER_HIERARCHY_SAMPLE, 0, &p->sample},
+        {SOFTSHI_SHADER_HIERARCHY_REDUCE, 0, &p->reduce},     {SOFTSHI_SHADER_HIERARCHY_PLAN, 0, &p->plan},
+        {SOFTSHI_SHADER_HIERARCHY_WIDEN, 1, &p->widen_first}, {SOFTSHI_SHADER_HIERARCHY_WIDEN, 0, &p->widen},
     };
     for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
         constants.values[SS_SPEC_COUNT] = list[i].from_fan_depth;
@@ -34,7 +34,7 @@ softsh_result softshi_hierarchy_create(softsh_occluders *o)
 void softshi_hierarchy_destroy(softsh_occluders *o)
 {
     softshi_hierarchy_pipelines *p = &o->pipelines;
-    softshi_pipeline *const all[] = {&p->convert, &p->reduce, &p->plan, &p->widen_first, &p->widen};
+    softshi_pipeline *const all[] = {&p->convert, &p->sample, &p->reduce, &p->plan, &p->widen_first, &p->widen};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         softshi_pipeline_destroy(o->context, all[i]);
 }
@@ -62,6 +62,15 @@ void softshi_hierarchy_record_convert(softshi_recorder *recorder, const softsh_o
 void softshi_hierarchy_record_levels(softshi_recorder *recorder, const softsh_occluders *o, VkExtent2D extent,
                                      const softshi_occluder_layout *layout, uint32_t layers)
 {
+    const uint32_t sample_groups = divide_up((uint32_t)layout->layer_quads - layout->quads[1], SS_SAMPLE_GROUP);
+    const softshi_pass sample = {
+        .pipeline = &o->pipelines.sample,
+        .reads = SOFTSHI_HEADER,
+        .writes = SOFTSHI_FAN_DEPTH,
+        .groups = {sample_groups < SS_DISPATCH_WIDTH ? sample_groups : SS_DISPATCH_WIDTH,
+                   divide_up(sample_groups, SS_DISPATCH_WIDTH), layers},
+    };
+    softshi_record_pass(recorder, &sample);
     for (uint32_t level = 3; level <= layout->top; level += 2) {
         const ss_level_push push = {.level = level};
         const softshi_pass pass = {

@@ -27,25 +27,25 @@ struct vertex
     bool occludes;
 };
 
-vertex load_vertex(uint layer, ivec2 at, uint level, ss_back_projection b, ss_receiver r, float band)
+vertex load_vertex(ss_grid grid, ivec2 at, ss_back_projection b, ss_receiver r, float band)
 {
-    const float g = ss_sample_depth(layer, at, level);
-    const vec2 place = ss_sample_place(at, level);
+    const float g = ss_sample_depth(grid, at);
+    const vec2 place = ss_sample_place(at, grid.level);
     return vertex(ss_back_project(b, place, g), ss_occludes(g, place, b, r, band));
 }
 
 // Whether any sample of the kernel occludes.
 bool any_occludes;
 
-void add_quads(uint layer, ss_samples s, ss_back_projection b, ss_receiver r, float band)
+void add_quads(ss_grid grid, ss_samples s, ss_back_projection b, ss_receiver r, float band)
 {
     const ivec2 up = ivec2(0, 1);
     for (int y = s.lo.y; y < s.hi.y; y++) {
-        vertex low = load_vertex(layer, ivec2(s.lo.x, y), s.level, b, r, band);
-        vertex high = load_vertex(layer, ivec2(s.lo.x, y) + up, s.level, b, r, band);
+        vertex low = load_vertex(grid, ivec2(s.lo.x, y), b, r, band);
+        vertex high = load_vertex(grid, ivec2(s.lo.x, y) + up, b, r, band);
         for (int x = s.lo.x + 1; x <= s.hi.x; x++) {
-            const vertex next_low = load_vertex(layer, ivec2(x, y), s.level, b, r, band);
-            const vertex next_high = load_vertex(layer, ivec2(x, y) + up, s.level, b, r, band);
+            const vertex next_low = load_vertex(grid, ivec2(x, y), b, r, band);
+            const vertex next_high = load_vertex(grid, ivec2(x, y) + up, b, r, band);
             any_occludes = any_occludes || next_low.occludes || next_high.occludes;
             if (low.occludes && high.occludes && next_low.occludes && next_high.occludes)
                 ss_add_quad(low.at, next_low.at, next_high.at, high.at);
@@ -61,16 +61,16 @@ struct micropatch
     bool occludes;
 };
 
-micropatch load_patch(uint layer, ivec2 at, uint level, ss_back_projection b, ss_receiver r, float band)
+micropatch load_patch(ss_grid grid, ivec2 at, ss_back_projection b, ss_receiver r, float band)
 {
-    const float g = ss_sample_depth(layer, at, level);
-    const vec2 place = ss_sample_place(at, level);
+    const float g = ss_sample_depth(grid, at);
+    const vec2 place = ss_sample_place(at, grid.level);
     const vec2 scale = vec2(b.matrix[0].x, b.matrix[1].y) * (b.den / (g - b.g));
-    const vec2 middle = scale * (place - b.uv) + b.constant, half_size = scale * (0.5 * float(1u << level));
+    const vec2 middle = scale * (place - b.uv) + b.constant, half_size = scale * (0.5 * float(1u << grid.level));
     return micropatch(middle - half_size, middle + half_size, ss_occludes(g, place, b, r, band));
 }
 
-void add_patches(uint layer, ss_samples s, ss_back_projection b, ss_receiver r, float band)
+void add_patches(ss_grid grid, ss_samples s, ss_back_projection b, ss_receiver r, float band)
 {
     const bool extended = SS_PRIMITIVE == SS_PRIMITIVE_PATCH_EXTENDED;
     for (int y = s.lo.y; y <= s.hi.y; y++) {
@@ -78,12 +78,12 @@ void add_patches(uint layer, ss_samples s, ss_back_projection b, ss_receiver r, 
         micropatch left;
         left.occludes = false;
         if (extended && s.lo.x > 0)
-            left = load_patch(layer, ivec2(s.lo.x - 1, y), s.level, b, r, band);
+            left = load_patch(grid, ivec2(s.lo.x - 1, y), b, r, band);
         for (int x = s.lo.x; x <= s.hi.x; x++) {
-            const micropatch here = load_patch(layer, ivec2(x, y), s.level, b, r, band);
+            const micropatch here = load_patch(grid, ivec2(x, y), b, r, band);
             vec2 lo = here.lo;
             if (extended) {
-                const micropatch below = load_patch(layer, ivec2(x, max(y - 1, 0)), s.level, b, r, band);
+                const micropatch below = load_patch(grid, ivec2(x, max(y - 1, 0)), b, r, band);
                 lo.x = left.occludes ? min(lo.x, left.hi.x) : lo.x;
                 lo.y = below.occludes && y > 0 ? min(lo.y, below.hi.y) : lo.y;
             }
@@ -115,10 +115,11 @@ void main()
     ss_area = 0.0;
     any_occludes = false;
     for (uint layer = 0u; layer < ss_layers(); layer++) {
+        const ss_grid grid = ss_load_grid(layer, samples.level);
         if (SS_IS_PATCH)
-            add_patches(layer, samples, b, r, band);
+            add_patches(grid, samples, b, r, band);
         else
-            add_quads(layer, samples, b, r, band);
+            add_quads(grid, samples, b, r, band);
         if (SS_MERGE_MAXIMUM || layer + 1u == ss_layers()) {
             if (SS_PATTERN_SIDE != 0)
                 mask_occlusion = max(mask_occlusion, ss_mask_occlusion(disc));

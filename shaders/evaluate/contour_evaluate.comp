@@ -52,14 +52,14 @@ void add_block(uint layer, ivec2 block, int log2_side, int x0, ss_samples s, ss_
 }
 
 // Which of the samples x0 to x0 + 31 of a row occlude; `inside` are those of the kernel, the others do not.
-uint occluding(uint layer, int x0, int y, uint inside, row_blocks rows, ss_samples s, ss_back_projection b, ss_receiver r,
+uint occluding(ss_grid grid, int x0, int y, uint inside, row_blocks rows, ss_samples s, ss_back_projection b, ss_receiver r,
                float band)
 {
     uint bits = rows.full & inside;
     for (uint todo = rows.mixed & inside; todo != 0u; todo &= todo - 1u) {
         const int k = findLSB(todo);
         const ivec2 at = ivec2(x0 + k, y);
-        const float g = ss_sample_depth(layer, at, s.level);
+        const float g = ss_sample_depth(grid, at);
         bits |= uint(ss_occludes(g, ss_sample_place(at, s.level), b, r, band)) << k;
     }
     return bits;
@@ -73,11 +73,11 @@ vec2 towards_next(int corner)
 }
 
 // The point of a contour half the way from an occluding corner of a cell to a neighbour, at the occluder's depth.
-vec2 contour_point(uint layer, ivec2 cell, int corner, vec2 half_step, uint level, ss_back_projection b)
+vec2 contour_point(ss_grid grid, ivec2 cell, int corner, vec2 half_step, ss_back_projection b)
 {
     const ivec2 at = cell + ivec2((corner + 1) >> 1 & 1, corner >> 1);
-    const float g = ss_sample_depth(layer, at, level);
-    return ss_back_project(b, ss_sample_place(at, level) + half_step * float(1u << level), g);
+    const float g = ss_sample_depth(grid, at);
+    return ss_back_project(b, ss_sample_place(at, grid.level) + half_step * float(1u << grid.level), g);
 }
 
 // Mean of clamp(x, 0, 1) for x from x0 to x1 in even steps.
@@ -101,6 +101,7 @@ float edge_area(vec2 from, vec2 to)
 // Area of what a layer hides, signed by the orientation of the light's axes.
 float layer_area(uint layer, ss_samples s, ss_back_projection b, ss_receiver r, float band, inout uint edges)
 {
+    const ss_grid grid = ss_load_grid(layer, s.level);
     float area = 0.0;
     // Blocks pay in kernels of several; measured: not below 24 samples a side, and larger ones from 48.
     const int side = max(s.hi.x - s.lo.x, s.hi.y - s.lo.y) + 1, log2_side = side > 48 ? 3 : 2;
@@ -119,7 +120,7 @@ float layer_area(uint layer, ss_samples s, ss_back_projection b, ss_receiver r, 
             rows.mixed = entered ? (in_blocks ? 0u : 0xffffffffu) : rows.mixed;
             for (int x = first_block; x < end_block; x++)
                 add_block(layer, ivec2(x, y >> log2_side), log2_side, x0, s, b, r, band, rows);
-            const uint above = occluding(layer, x0, y, y <= s.hi.y ? columns : 0u, rows, s, b, r, band);
+            const uint above = occluding(grid, x0, y, y <= s.hi.y ? columns : 0u, rows, s, b, r, band);
             // Corners a, b, c, d of all cells of the row, counter-clockwise from the lower left.
             const uint ca = below, cb = below >> 1, cc = above >> 1, cd = above;
             const uint any = (ca | cb | cc | cd) & 0x7fffffffu, all = ca & cb & cc & cd;
@@ -142,8 +143,8 @@ float layer_area(uint layer, ss_samples s, ss_back_projection b, ss_receiver r, 
                 const uint following = (corners >> 1) | (corners & 1u) << 3;
                 const int leaves = findLSB(corners & ~following), enters = findLSB(~corners & following);
                 const ivec2 cell = ivec2(x0 + k, y - 1);
-                const vec2 from = contour_point(layer, cell, leaves, towards_next(leaves), s.level, b);
-                const vec2 to = contour_point(layer, cell, (enters + 1) & 3, -towards_next(enters), s.level, b);
+                const vec2 from = contour_point(grid, cell, leaves, towards_next(leaves), b);
+                const vec2 to = contour_point(grid, cell, (enters + 1) & 3, -towards_next(enters), b);
                 area += edge_area(from, to);
             }
             below = above;

@@ -8,6 +8,8 @@
 #include "ss_io_bindings.glsl"
 #include "ss_receiver.glsl"
 #include "ss_range.glsl"
+#include "ss_kernel.glsl"
+#include "ss_sample.glsl"
 
 layout(local_size_x = SS_TILE_X, local_size_y = SS_TILE_Y) in;
 
@@ -23,7 +25,7 @@ void main()
     const float planar = r.g + dot(r.gradient, to_centre) + r.eta + 0.5 * (abs(r.gradient.x) + abs(r.gradient.y));
     const float g = (ss_flags & SS_FLAG_OVERRIDE_BIAS) != 0u ? ss_shifted(r.g) : planar;
     for (uint layer = 0u; layer < ss_layers(); layer++) {
-        const float occluder = ss_load_fan_depth(layer, texel);
+        const float occluder = ss_sample_depth(ss_load_grid(layer, 0u), texel);
         dark = dark || (r.valid && occluder > g && occ.light.w - occ.light.z * occluder > 0.0);
     }
     ss_write_visibility(pixel, dark ? 0.0 : 1.0);

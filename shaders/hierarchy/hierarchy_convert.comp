@@ -12,14 +12,8 @@ layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_OCCLUDERS, std140) uniform ss_o
 {
     ss_occluders occ;
 };
-layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_FAN_DEPTH, std430) writeonly buffer ss_fan_depth_buffer
-{
-    float fan_depth[];
-};
-layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_RANGES, std430) writeonly buffer ss_ranges_buffer
-{
-    vec2 ranges[];
-};
+layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_MADE_DEPTH) uniform writeonly imageBuffer made_depth;
+layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_MADE_RANGES) uniform writeonly imageBuffer made_ranges;
 layout(set = SS_SET_IO, binding = SS_BIND_DEPTH) uniform texture2D map_depth;
 layout(push_constant) uniform ss_push
 {
@@ -31,17 +25,20 @@ float convert(ivec2 at)
     const float depth = texelFetch(map_depth, push.rect.xy + at, 0).x;
     // NaN fails every comparison and becomes the far plane.
     const float d = depth >= 0.0 ? min(depth, 1.0) : (depth < 0.0 ? 0.0 : push.far_depth);
-    const float g = push.depth_scale * d + push.depth_offset;
-    fan_depth[push.layer * occ.strides.x + uint(at.y) * occ.size.x + uint(at.x)] = g;
-    return g;
+    return push.depth_scale * d + push.depth_offset;
 }
 
-// A block of 2 x 2 texels; what is outside the map is clamped into it.
-vec2 convert_block(ivec2 at, ivec2 last)
+// Four texels of a row; what is outside the map is clamped into it.
+vec4 convert_quad(ivec2 at, ivec2 last)
 {
-    const ivec2 a = min(at, last), b = min(at + 1, last);
-    const float p = convert(a), q = convert(ivec2(b.x, a.y)), r = convert(ivec2(a.x, b.y)), s = convert(b);
-    return vec2(min(min(p, q), min(r, s)), max(max(p, q), max(r, s)));
+    const int y = min(at.y, last.y);
+    return vec4(convert(ivec2(at.x, y)), convert(ivec2(min(at.x + 1, last.x), y)), convert(ivec2(min(at.x + 2, last.x), y)),
+                convert(ivec2(min(at.x + 3, last.x), y)));
+}
+
+void store_range(uint at, vec2 range)
+{
+    imageStore(made_ranges, int(push.layer * occ.strides.y + at), vec4(range, 0.0, 0.0));
 }
 
 void main()
@@ -49,15 +46,25 @@ void main()
     const ivec2 at = ivec2(gl_GlobalInvocationID.xy), last = ivec2(occ.size.xy) - 1;
     if (any(greaterThan(4 * at, last)))
         return;
-    const uint base = push.layer * occ.strides.y;
     vec2 whole = vec2(3e38, -3e38);
-    for (int i = 0; i < 4; i++) {
-        const ivec2 block = 2 * at + ivec2(i & 1, i >> 1);
-        const vec2 range = convert_block(2 * block, last);
-        if (all(lessThanEqual(2 * block, last)))
-            ranges[base + occ.pyramid[1].x + uint(block.y) * occ.pyramid[1].y + uint(block.x)] = range;
-        whole = vec2(min(whole.x, range.x), max(whole.y, range.y));
+    for (int i = 0; i < 2; i++) {
+        const ivec2 pair = ivec2(4 * at.x, 4 * at.y + 2 * i);
+        const vec4 lower = convert_quad(pair, last), upper = convert_quad(pair + ivec2(0, 1), last);
+        const int quad = int(push.layer * occ.strides.x + occ.pyramid[0].z + uint(pair.y) * occ.pyramid[0].w) + at.x;
+        if (pair.y <= last.y)
+            imageStore(made_depth, quad, lower);
+        if (pair.y + 1 <= last.y)
+            imageStore(made_depth, quad + int(occ.pyramid[0].w), upper);
+        const vec4 farther = min(lower, upper), nearer = max(lower, upper);
+        const vec2 left = vec2(min(farther.x, farther.y), max(nearer.x, nearer.y));
+        const vec2 right = vec2(min(farther.z, farther.w), max(nearer.z, nearer.w));
+        const uint block = occ.pyramid[1].x + uint(2 * at.y + i) * occ.pyramid[1].y + uint(2 * at.x);
+        if (pair.y <= last.y)
+            store_range(block, left);
+        if (pair.y <= last.y && pair.x + 2 <= last.x)
+            store_range(block + 1u, right);
+        whole = vec2(min(whole.x, min(left.x, right.x)), max(whole.y, max(left.y, right.y)));
     }
     if (occ.levels.x > 1u)
-        ranges[base + occ.pyramid[2].x + uint(at.y) * occ.pyramid[2].y + uint(at.x)] = whole;
+        store_range(occ.pyramid[2].x + uint(at.y) * occ.pyramid[2].y + uint(at.x), whole);
 }

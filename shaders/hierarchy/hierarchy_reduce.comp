@@ -12,14 +12,16 @@ layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_OCCLUDERS, std140) uniform ss_o
 {
     ss_occluders occ;
 };
-layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_RANGES, std430) writeonly buffer ss_made_buffer
-{
-    vec2 made[];
-};
+layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_MADE_RANGES) uniform writeonly imageBuffer made_ranges;
 layout(push_constant) uniform ss_push
 {
     ss_level_push push;
 };
+
+void store_range(uint at, vec2 range)
+{
+    imageStore(made_ranges, int(at), vec4(range, 0.0, 0.0));
+}
 
 void main()
 {
@@ -38,9 +40,9 @@ void main()
         const vec2 r = ss_range_at(below + uint(b.y * row_below + a.x)), s = ss_range_at(below + uint(b.y * row_below + b.x));
         const vec2 range = vec2(min(min(p.x, q.x), min(r.x, s.x)), max(max(p.y, q.y), max(r.y, s.y)));
         if (all(lessThanEqual(block, last)))
-            made[level + uint(block.y * row + block.x)] = range;
+            store_range(level + uint(block.y * row + block.x), range);
         whole = vec2(min(whole.x, range.x), max(whole.y, range.y));
     }
     if (push.level < occ.levels.x)
-        made[layer + occ.pyramid[push.level + 1u].x + uint(at.y) * occ.pyramid[push.level + 1u].y + uint(at.x)] = whole;
+        store_range(layer + occ.pyramid[push.level + 1u].x + uint(at.y) * occ.pyramid[push.level + 1u].y + uint(at.x), whole);
 }

@@ -12,10 +12,7 @@ layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_OCCLUDERS, std140) uniform ss_o
 {
     ss_occluders occ;
 };
-layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_RANGES, std430) writeonly buffer ss_made_buffer
-{
-    vec2 made[];
-};
+layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_MADE_RANGES) uniform writeonly imageBuffer made_ranges;
 layout(constant_id = SS_SPEC_COUNT) const bool FROM_FAN_DEPTH = false; // an MSSM's level 1
 layout(push_constant) uniform ss_push
 {
@@ -27,10 +24,10 @@ vec2 unite(vec2 a, vec2 b)
     return vec2(min(a.x, b.x), max(a.y, b.y));
 }
 
-// A texel of the level below.
-vec2 load(uint i)
+// A texel of the level below; rows of fan depths are whole quads.
+vec2 load(uint row, int x)
 {
-    return FROM_FAN_DEPTH ? vec2(ss_fan_depth_at(i)) : ss_range_at(i);
+    return FROM_FAN_DEPTH ? vec2(ss_depth_at(4u * row + uint(x))) : ss_range_at(row + uint(x));
 }
 
 void main()
@@ -47,15 +44,15 @@ void main()
     const uint to = layer + occ.strides.z + uint(shift) * occ.strides.w;
     uint from = shift > 0 ? to - occ.strides.w : layer + occ.pyramid[occ.levels.y].x;
     if (FROM_FAN_DEPTH)
-        from = gl_GlobalInvocationID.z * occ.strides.x;
-    const uint left = from + uint(max(x + lo, 0)), right = from + uint(min(x + lo + apart, size.x - 1));
-    const uint first = uint(max(y + lo, 0) * size.x);
-    vec2 above = unite(load(left + first), load(right + first));
+        from = gl_GlobalInvocationID.z * occ.strides.x + occ.pyramid[0].z;
+    const int left = max(x + lo, 0), right = min(x + lo + apart, size.x - 1);
+    const uint stride = FROM_FAN_DEPTH ? occ.pyramid[0].w : uint(size.x), first = from + uint(max(y + lo, 0)) * stride;
+    vec2 above = unite(load(first, left), load(first, right));
     for (int i = 0; i < SS_WIDEN_ROWS; i++) {
-        const uint next = uint(min(y + lo + apart, size.y - 1) * size.x);
-        const vec2 below = unite(load(left + next), load(right + next));
+        const uint next = from + uint(min(y + lo + apart, size.y - 1)) * stride;
+        const vec2 below = unite(load(next, left), load(next, right));
         if (y < size.y)
-            made[to + uint(y * size.x + x)] = unite(above, below);
+            imageStore(made_ranges, int(to) + y * size.x + x, vec4(unite(above, below), 0.0, 0.0));
         above = below;
         y += apart;
     }

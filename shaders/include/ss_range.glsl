@@ -14,12 +14,6 @@ ivec2 ss_level_size(uint level)
     return (ivec2(occ.size.xy) + (1 << level) - 1) >> level;
 }
 
-float ss_load_fan_depth(uint layer, ivec2 texel)
-{
-    const ivec2 t = clamp(texel, ivec2(0), ivec2(occ.size.xy) - 1);
-    return ss_fan_depth_at(layer * occ.strides.x + uint(t.y) * occ.size.x + uint(t.x));
-}
-
 vec2 ss_load_pyramid(uint layer, uint level, ivec2 texel)
 {
     const ivec2 size = ss_level_size(level);

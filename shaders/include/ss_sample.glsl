@@ -43,13 +43,28 @@ vec2 ss_sample_place(ivec2 at, uint level)
     return (vec2(at) + 0.5) * float(1u << level);
 }
 
-float ss_sample_depth(uint layer, ivec2 at, uint level)
+// Where a layer's samples of a level are. Looked up once, not for every sample: indexing a uniform costs as much as a fetch.
+struct ss_grid
 {
-    if (SS_SAMPLED)
-        return ss_load_fan_depth(layer, ss_sampled_texel(at, level));
-    if (level == 0u)
-        return ss_load_fan_depth(layer, at);
-    return ss_load_pyramid(layer, level, at).y;
+    uint level;
+    ivec2 last;
+    uint depths, row; // first fan depth, and fan depths in a row
+    uint ranges;      // first texel of the pyramid's level
+};
+
+ss_grid ss_load_grid(uint layer, uint level)
+{
+    const uvec4 of_level = occ.pyramid[level];
+    return ss_grid(level, ss_level_size(level) - 1, 4u * (layer * occ.strides.x + of_level.z), 4u * of_level.w,
+                   layer * occ.strides.y + of_level.x);
+}
+
+float ss_sample_depth(ss_grid grid, ivec2 at)
+{
+    const ivec2 t = clamp(at, ivec2(0), grid.last);
+    if (SS_SAMPLED || grid.level == 0u)
+        return ss_depth_at(grid.depths + uint(t.y) * grid.row + uint(t.x));
+    return ss_range_at(grid.ranges + uint(t.y * (grid.last.x + 1) + t.x)).y;
 }
 
 bool ss_occludes(float g, vec2 at, ss_back_projection b, ss_receiver r, float band)

@@ -34,12 +34,13 @@ typedef struct ss_ivec4 {
 /* Descriptor sets and bindings; every pipeline uses the same two set layouts. */
 #define SS_SET_OCCLUDERS 0
 #define SS_BIND_OCCLUDERS 0 /* uniform: ss_occluders and ss_plan */
-#define SS_BIND_FAN_DEPTH 1 /* where it is written, float per texel and layer: level 0 */
-#define SS_BIND_RANGES 2 /* likewise, vec2 (farthest, nearest) per texel: a layer's HSM levels 1 to top, its MSSM levels 1 to n */
-#define SS_BIND_PLAN 3   /* ss_plan, where it is written */
-#define SS_BIND_FAN_DEPTH_TEXELS 4 /* where both are read: as texel buffers */
-#define SS_BIND_RANGES_TEXELS 5
-#define SS_OCCLUDER_BINDINGS 6
+#define SS_BIND_PLAN 1       /* ss_plan, where it is written */
+#define SS_BIND_MADE_DEPTH 2  /* storage texels, where they are written: fan depths, four of a row to a texel */
+#define SS_BIND_MADE_RANGES 3 /* vec2 (farthest, nearest): a layer's HSM levels 1 to top, its MSSM levels 1 to n */
+#define SS_BIND_DEPTHS 4      /* uniform texels, where they are read: single fan depths */
+#define SS_BIND_DEPTH_QUADS 5 /* four of them */
+#define SS_BIND_RANGES 6
+#define SS_OCCLUDER_BINDINGS 7
 
 #define SS_SET_IO 1
 #define SS_BIND_DEPTH 0      /* sampled: the map (build) or the camera's depth */
@@ -78,6 +79,7 @@ typedef struct ss_ivec4 {
 #define SS_TILE_PIXELS 64
 #define SS_EVALUATE_GROUP 64
 #define SS_MAX_LEVELS 16      /* levels of a 32768 texel map */
+#define SS_SAMPLE_GROUP 64    /* quads that a group of hierarchy_sample makes */
 #define SS_WIDEN_ROWS 4       /* that one invocation of hierarchy_widen makes */
 #define SS_TILE_REFINEMENTS 2 /* of kernels: a third pays for pixels only */
 #define SS_MAX_REFINEMENTS 3
@@ -106,9 +108,12 @@ SS_STRUCT(ss_occluders)
     SS_VEC4 extent;     /* half side of the square that areas are clipped to; unused */
     SS_UVEC4 size;      /* width, height, layers; unused */
     SS_UVEC4 levels;    /* top of the pyramid, join level, wide levels there is room for, their width */
-    SS_UVEC4 strides;   /* texels per layer: fan depth, ranges; first texel of wide level 1, texels per wide level */
+    SS_UVEC4 strides;   /* per layer: quads of fan depths, texels of ranges; first texel of wide level 1, texels per wide
+                           level */
     SS_UVEC4 unused[8]; /* ss_plan begins at a multiple of every offset alignment */
-    SS_UVEC4 pyramid[SS_MAX_LEVELS]; /* per level: first texel, width; level 0 and the rest unused */
+    /* Per level: first texel and width of its ranges, which level 0 has none of; first quad of its sampled fan depths, quads
+     * in a row of them. */
+    SS_UVEC4 pyramid[SS_MAX_LEVELS];
 }
 SS_STRUCT_END(ss_occluders);
 

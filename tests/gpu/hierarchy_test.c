@@ -98,6 +98,15 @@ static void check_levels(const readback *r)
                 for (uint32_t x = 0; x < reference_hsm_size(r->width, level); x++)
                     same(readback_pyramid(r, layer, level, x, y), reference_hsm(g, r->width, r->height, level, x, y), r,
                          "pyramid", level, x, y);
+        for (uint32_t level = 1; level <= r->top; level++)
+            for (uint32_t y = 0; y < reference_hsm_size(r->height, level); y++)
+                for (uint32_t x = 0; x < reference_hsm_size(r->width, level); x++) {
+                    const uint32_t half = 1u << (level - 1), far_u = (x << level) + half, far_v = (y << level) + half;
+                    const uint32_t u = far_u < r->width ? far_u : r->width - 1,
+                                   v = far_v < r->height ? far_v : r->height - 1;
+                    const float sample = readback_sample(r, layer, level, x, y);
+                    assert_memory_equal(&sample, &g[(size_t)v * r->width + u], sizeof sample);
+                }
         for (uint32_t level = 1; level <= r->wide_built; level++) {
             const uint32_t width = reference_hsm_size(r->width, r->join),
                            height = reference_hsm_size(r->height, r->join);

@@ -56,7 +56,16 @@ void readback_create(const lamp *l, readback *out)
     out->wide_texels = layout.wide_texels;
     out->layer_texels = (size_t)layout.layer_texels;
     memcpy(out->pyramid_offsets, layout.offsets, sizeof out->pyramid_offsets);
-    out->fan_depth = copy_range(&o->block, o->layout.fan_depth.offset, o->layout.fan_depth.size);
+    memcpy(out->quads, layout.quads, sizeof out->quads);
+    out->layer_quads = (size_t)layout.layer_quads;
+    out->samples = copy_range(&o->block, o->layout.fan_depth.offset, o->layout.fan_depth.size);
+    out->fan_depth = malloc((size_t)out->width * out->height * out->layers * sizeof *out->fan_depth);
+    assert_non_null(out->fan_depth);
+    for (uint32_t layer = 0; layer < out->layers; layer++)
+        for (uint32_t y = 0; y < out->height; y++)
+            for (uint32_t x = 0; x < out->width; x++)
+                out->fan_depth[((size_t)layer * out->height + y) * out->width + x] =
+                    readback_sample(out, layer, 0, x, y);
     out->ranges = copy_range(&o->block, o->layout.ranges.offset, o->layout.ranges.size);
     free(header);
     free(plan);
@@ -64,6 +73,7 @@ void readback_create(const lamp *l, readback *out)
 
 void readback_destroy(readback *r)
 {
+    free(r->samples);
     free(r->fan_depth);
     free(r->ranges);
 }
@@ -72,6 +82,12 @@ reference_range readback_pyramid(const readback *r, uint32_t layer, uint32_t lev
 {
     return r->ranges[layer * r->layer_texels + r->pyramid_offsets[level] +
                      (size_t)y * reference_hsm_size(r->width, level) + x];
+}
+
+float readback_sample(const readback *r, uint32_t layer, uint32_t level, uint32_t x, uint32_t y)
+{
+    const size_t row = (reference_hsm_size(r->width, level) + 3) / 4 * 4;
+    return r->samples[4 * (layer * r->layer_quads + r->quads[level]) + y * row + x];
 }
 
 reference_range readback_wide(const readback *r, uint32_t layer, uint32_t level, uint32_t x, uint32_t y)

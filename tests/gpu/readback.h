@@ -11,7 +11,10 @@ typedef struct readback {
     uint32_t wide_allocated, wide_built; /* levels */
     uint32_t pyramid_offsets[16], wide_offset, wide_texels; /* in a layer's ranges */
     size_t layer_texels;
-    float *fan_depth; /* layer after layer */
+    uint32_t quads[16]; /* of fan depths, where levels begin */
+    size_t layer_quads;
+    float *samples;   /* as the device has them */
+    float *fan_depth; /* of level 0, layer after layer */
     reference_range *ranges;
 } readback;
 
@@ -20,6 +23,8 @@ void readback_destroy(readback *r);
 /* One texel of pyramid level `level` and, at the resolution of level `join`, of wide level `level`; both count from 1.
  */
 reference_range readback_pyramid(const readback *r, uint32_t layer, uint32_t level, uint32_t x, uint32_t y);
+/* Sampled fan depth of a level. */
+float readback_sample(const readback *r, uint32_t layer, uint32_t level, uint32_t x, uint32_t y);
 reference_range readback_wide(const readback *r, uint32_t layer, uint32_t level, uint32_t x, uint32_t y);
 
 /* What the post filter of a view's last run worked on: area occlusions of the pixels of a width x height render area,
