@@ -34,6 +34,9 @@ struct tile_bounds
     vec3 plane;      // g >= plane.x u + plane.y v + plane.z for every receiver
     float thickness; // how far receivers rise above that plane
     float eta;
+    float side;      // of the plane that their fronts are on
+    vec2 gradient;   // of the plane, however steep
+    bool exact;      // nothing leaves the plane but for the precision of depths
 };
 
 vec4 load_column(uint tile, uint column)
@@ -104,6 +107,9 @@ tile_bounds bound(ivec2 corner, tile_depth d)
     vec2 gradient = vec2(e.z * f.y - f.z * e.y, f.z * e.x - e.z * f.x) / det;
     if (!(det * det > 1e-6 * dot(e.xy, e.xy) * dot(f.xy, f.xy)))
         gradient = vec2(0.0);
+    t.gradient = ss_finite_gradient(gradient);
+    t.exact = d.residual.y - d.residual.x <= 8.0 * frame.camera.w;
+    t.side = ss_side(h, t.gradient);
     gradient = ss_clamp_gradient(gradient, t.g_hi);
     float base = 3e38, top = -3e38;
     for (int i = 0; i < 8; i++) {
@@ -117,13 +123,32 @@ tile_bounds bound(ivec2 corner, tile_depth d)
     return t;
 }
 
+// Whether the receivers leave their plane by no more than it rises over two texels.
+bool is_planar(tile_bounds t)
+{
+    const float slope = abs(t.plane.x) + abs(t.plane.y) + ss_slack(t.g_hi);
+    return t.thickness <= 2.0 * slope + 4.0 * t.eta;
+}
+
+// Whether all of the light lies in front of the plane through any of the receivers; and whether none does.
+void find_horizon(tile_bounds t, out bool all_before, out bool all_behind)
+{
+    const vec2 middle = 0.5 * (t.lo + t.hi), half_side = 0.5 * (t.hi - t.lo);
+    const ss_horizon_line line = ss_horizon_of(middle, 0.5 * (t.g_lo + t.g_hi), t.gradient);
+    const float widest = abs(line.n.x) + abs(line.n.y);
+    const float room = abs(occ.light.z) * (0.5 * (t.g_hi - t.g_lo) + dot(abs(t.gradient), half_side));
+    const bool before = line.c - room >= widest, behind = line.c + room <= -widest;
+    all_before = t.side > 0.0 ? before : behind;
+    all_behind = t.exact && (t.side > 0.0 ? behind : before);
+}
+
 // Whether no texel of the box rises above the receivers' plane by more than the plane itself does within a cell of 4 x 4
 // texels, a footprint the pixels' own test allows as well. Only for tiles that are one plane, and boxes of a few cells.
 bool lies_under_plane(tile_bounds t, uint layer, ivec2 lo, ivec2 hi)
 {
     const int side = max(hi.x - lo.x, hi.y - lo.y) + 1;
     const float slope = abs(t.plane.x) + abs(t.plane.y) + ss_slack(t.g_hi);
-    const bool planar = t.thickness <= 2.0 * slope + 4.0 * t.eta;
+    const bool planar = is_planar(t);
     const int level = min(2, int(occ.levels.x));
     const ivec2 a = lo >> level, b = side <= MAX_PLANE_SIDE && planar ? hi >> level : a - 1;
     const float cell = float(1 << level), footprint = 0.5 * cell * slope + t.eta;
@@ -149,6 +174,8 @@ uint classify(tile_bounds t, inout float g_hi, inout uint nodes)
     if (any(lessThan(t.hi, vec2(0.0))) || any(greaterThan(t.lo, limit)))
         return SS_STATE_LIT;
     const bool biased = (ss_flags & SS_FLAG_OVERRIDE_BIAS) != 0u;
+    bool all_before, all_behind;
+    find_horizon(t, all_before, all_behind);
     uint state = SS_STATE_PIXELS;
     for (int i = 0; i < SS_TILE_REFINEMENTS && state == SS_STATE_PIXELS; i++) {
         const ss_samples s = ss_kernel_samples(ss_kernel_box(t.lo, t.hi, t.g_lo, den, g_hi));
@@ -159,18 +186,18 @@ uint classify(tile_bounds t, inout float g_hi, inout uint nodes)
         const float rise = dot(abs(t.plane.xy), vec2(s.texel_hi - s.texel_lo + 1)) + t.eta;
         const bool inside = all(greaterThanEqual(t.lo, vec2(0.0))) && all(lessThanEqual(t.hi, limit));
         const bool dark = ss_rim_occludes(
-            s, s.covered && inside && range.x > t.g_hi + rise && occ.light.z * range.y < occ.light.w && !biased,
+            s, t.side > 0.0 && s.covered && inside && range.x > t.g_hi + rise && occ.light.z * range.y < occ.light.w && !biased,
             t.g_hi + rise + (abs(t.plane.x) + abs(t.plane.y)) * float(1u << s.level));
         if (!(range.y > t.g_lo + (biased ? 0.0 : t.eta)))
             state = SS_STATE_LIT;
-        else if (dark)
+        else if (dark || (all_behind && !biased))
             state = SS_STATE_UMBRA;
         g_hi = min(g_hi, range.y);
     }
     if (state != SS_STATE_PIXELS || biased)
         return state;
     const ss_samples s = ss_kernel_samples(ss_kernel_box(t.lo, t.hi, t.g_lo, den, g_hi));
-    bool under = true;
+    bool under = t.side > 0.0 && all_before;
     for (uint layer = 0u; layer < ss_layers(); layer++)
         under = under && lies_under_plane(t, layer, s.texel_lo, s.texel_hi);
     return under ? SS_STATE_LIT : SS_STATE_PIXELS;

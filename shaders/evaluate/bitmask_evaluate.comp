@@ -128,12 +128,12 @@ void main()
             ss_area = 0.0;
         }
     }
-    const float occlusion = SS_PATTERN_SIDE != 0 ? mask_occlusion : min(area_occlusion, 1.0);
+    const float occlusion = min((SS_PATTERN_SIDE != 0 ? mask_occlusion : area_occlusion) + r.horizon, 1.0);
     ss_write_visibility(pixel, 1.0 - occlusion);
     if (SS_SPARSE)
-        ss_store_visible(pixel, any_occludes ? 1.0 - occlusion : SS_ALL_LIT);
+        ss_store_visible(pixel, any_occludes || r.horizon > 0.0 ? 1.0 - occlusion : SS_ALL_LIT);
     if (SS_FILTER)
-        ss_store_filter_values(pixel, area_occlusion, occlusion);
+        ss_store_filter_values(pixel, area_occlusion + r.horizon, occlusion);
     if (SS_STATS) {
         const ivec2 n = samples.hi - samples.lo + (SS_IS_PATCH ? 1 : 0);
         ss_count(SS_STAT_PRIMITIVES, uint(max(n.x, 0) * max(n.y, 0)) * ss_layers());

@@ -41,10 +41,11 @@ void add_block(uint layer, ivec2 block, int log2_side, int x0, ss_samples s, ss_
     const float plane = b.g - r.eta + dot(r.gradient, away), rise = (abs(r.gradient.x) + abs(r.gradient.y)) * half_side;
     const float noise = r.drift * (abs(away.x) + abs(away.y) + 2.0 * half_side);
     // A quarter of eta is more than these sums are rounded by.
-    const bool under = r.smooth_surface && range.y <= plane - rise + band - 0.25 * r.eta;
+    const bool under = r.side > 0.0 ? range.y <= plane - rise + band - 0.25 * r.eta : range.x >= plane + rise - band + 0.25 * r.eta;
     const bool none = level == shift && (!(range.y > b.g) || under);
-    const bool every = level == shift && range.x > b.g && occ.light.w - occ.light.z * range.y > 0.0 &&
-                       range.x > plane + rise + band + noise + 0.25 * r.eta;
+    const bool over = r.side > 0.0 ? range.x > plane + rise + band + noise + 0.25 * r.eta
+                                   : range.y < plane - rise - band - noise - 0.25 * r.eta;
+    const bool every = level == shift && range.x > b.g && occ.light.w - occ.light.z * range.y > 0.0 && over;
     const int first = (block.x << log2_side) - x0;
     const uint side = (1u << (1 << log2_side)) - 1u, bits = first < 0 ? side >> -first : side << first;
     rows.full |= every ? bits : 0u;
@@ -175,9 +176,10 @@ void main()
         const float area = signed_area > 0.0 ? min(signed_area, 1.0) : 0.0; // not a number is nothing
         occlusion = SS_MERGE_MAXIMUM ? max(occlusion, area) : min(occlusion + area, 1.0);
     }
-    ss_write_visibility(pixel, 1.0 - occlusion);
+    const float visible = max(1.0 - occlusion - r.horizon, 0.0);
+    ss_write_visibility(pixel, visible);
     if (SS_SPARSE)
-        ss_store_visible(pixel, edges == 0u ? SS_ALL_LIT : 1.0 - occlusion);
+        ss_store_visible(pixel, edges == 0u && r.horizon == 0.0 ? SS_ALL_LIT : visible);
     if (SS_STATS) {
         ss_count(SS_STAT_PRIMITIVES, edges);
         if (samples.clamped)

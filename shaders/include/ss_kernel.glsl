@@ -111,10 +111,10 @@ float ss_biased(ss_receiver r, uint level, out float band)
     return overridden ? ss_shifted(r.g) : r.g + r.eta + lift;
 }
 
-// Whether a sample at height `height` over the receiver's plane is part of something else.
+// Whether a sample at height `height` over the receiver's plane is in front of the receiver's surface.
 bool ss_is_off_plane(ss_receiver r, float height, float band)
 {
-    return !((r.smooth_surface ? height : abs(height)) <= band);
+    return !(r.side * height <= band);
 }
 
 // The samples of a receiver's kernel for occluders up to g_hi.
@@ -175,13 +175,13 @@ ss_kernel ss_find_kernel(ss_receiver r, float g_hi)
         const ivec2 size = k.samples.texel_hi - k.samples.texel_lo;
         const float least = g + max(rise + band, 0.0);
         const bool dark = ss_rim_occludes(
-            k.samples, k.samples.covered && range.x > least && occ.light.z * range.y < occ.light.w,
+            k.samples, r.side > 0.0 && k.samples.covered && range.x > least && occ.light.z * range.y < occ.light.w,
             least + (abs(r.gradient.x) + abs(r.gradient.y)) * float(1u << k.samples.level));
         if (!(range.y > g))
             k.state = SS_STATE_LIT;
-        else if (dark)
+        else if (dark || r.horizon >= 1.0)
             k.state = SS_STATE_UMBRA;
-        else if (max(size.x, size.y) <= 2 && (ss_flags & SS_FLAG_OVERRIDE_BIAS) == 0u &&
+        else if (max(size.x, size.y) <= 2 && (ss_flags & SS_FLAG_OVERRIDE_BIAS) == 0u && r.side > 0.0 && r.horizon == 0.0 &&
                  !(range.y > g + rise + ss_slack(r.g)))
             k.state = SS_STATE_LIT; // a few texels that all lie under the receiver's own plane
         g_hi = min(g_hi, range.y);

@@ -1,10 +1,11 @@
 // Camera pixels as receivers in map space: docs/numerics.md, section 3.
-// Needs the frame and occluder bindings.
+// Needs the frame and occluder bindings and the horizon.
 #ifndef SS_RECEIVER_GLSL
 #define SS_RECEIVER_GLSL
 
-// Share of its own rise by which a neighbour may leave the plane before the plane is not trusted. Measured: less excludes
-// nothing on curved surfaces, more excludes contacts on noisy meshes.
+#include "ss_horizon.glsl"
+
+// Share of its own rise by which a neighbour may leave the plane before the plane may not tell that its front is turned away.
 const float SS_SMOOTH = 0.03;
 
 struct ss_receiver
@@ -16,7 +17,8 @@ struct ss_receiver
     float eta;     // precision of the depths compared with g
     float drift;   // precision of the plane, per texel of distance
     bool away;     // all of the light lies behind the plane its normal gives
-    bool smooth_surface; // the plane is good enough to tell what lies below it
+    float side;    // of its plane that the surface's front is on: 1 where g is greater, -1 where it is less
+    float horizon; // share of the light behind its plane
 };
 
 bool ss_is_receiver(float depth)
@@ -43,13 +45,26 @@ float ss_load_depth(ivec2 pixel)
     return texelFetch(camera_depth, p, 0).x;
 }
 
-// The camera's depth is precise to rho: how far that moves the point off its own plane, plus the map's share and rounding.
-float ss_eta(vec4 h, vec2 gradient)
+// How fast a point leaves the plane through it when the camera's device depth grows.
+float ss_leaves_plane(vec4 h, vec2 gradient)
 {
     const vec3 here = h.xyz / h.w;
     const vec3 per_depth = (vec3(frame.to_map[0].z, frame.to_map[1].z, frame.to_map[2].z) - here * frame.to_map[3].z) / h.w;
-    return occ.depths.x + abs(per_depth.z - dot(gradient, per_depth.xy)) * frame.camera.w +
-           exp2(-20.0) * max(abs(here.z), abs(gradient.x) + abs(gradient.y));
+    return per_depth.z - dot(gradient, per_depth.xy);
+}
+
+// The camera's depth is precise to rho: how far that moves the point off its own plane, plus the map's share and rounding.
+float ss_eta(vec4 h, vec2 gradient)
+{
+    return occ.depths.x + abs(ss_leaves_plane(h, gradient)) * frame.camera.w +
+           exp2(-20.0) * max(abs(h.z / h.w), abs(gradient.x) + abs(gradient.y));
+}
+
+// The camera sees the front of a surface.
+float ss_side(vec4 h, vec2 gradient)
+{
+    const float away = ss_leaves_plane(h, gradient);
+    return ((ss_flags & SS_FLAG_REVERSED) != 0u ? -away : away) > 0.0 ? -1.0 : 1.0;
 }
 
 // What a surface turned by another 27 degrees would rise over a texel: surfaces are less flat than their planes, and what is
@@ -68,13 +83,18 @@ float ss_shifted(float g)
     return (ss_flags & SS_FLAG_ORTHOGRAPHIC) != 0u ? g + b : perspective;
 }
 
+// Not a number, and what is close to overflow, is 0.
+vec2 ss_finite_gradient(vec2 gradient)
+{
+    return mix(vec2(0.0), gradient, lessThan(abs(gradient), vec2(1e30)));
+}
+
 vec2 ss_clamp_gradient(vec2 gradient, float g)
 {
     const float tan_limit = 114.0; // tan 89.5 degrees
     const float scale = (ss_flags & SS_FLAG_ORTHOGRAPHIC) != 0u ? 1.0 : abs(g);
     const vec2 limit = tan_limit * scale * occ.depths.yz;
-    return vec2(abs(gradient.x) < 1e30 ? clamp(gradient.x, -limit.x, limit.x) : 0.0,
-                abs(gradient.y) < 1e30 ? clamp(gradient.y, -limit.y, limit.y) : 0.0);
+    return clamp(ss_finite_gradient(gradient), -limit, limit);
 }
 
 // Difference in (u, v, g) to a neighbour; false if there is none.
@@ -117,7 +137,7 @@ vec2 ss_gradient_from_depth(ivec2 pixel, vec3 here, float eta, out float drift, 
 }
 
 // Gradient of the plane with world normal `n` through the point, and whether it faces away from all of the light.
-vec2 ss_gradient_from_normal(vec3 n, vec3 here, out bool away)
+vec2 ss_gradient_from_normal(vec3 n, vec3 here, out bool away, out float side)
 {
     const vec3 a = frame.normal_map[0].xyz - here.x * frame.normal_map[3].xyz;
     const vec3 b = frame.normal_map[1].xyz - here.y * frame.normal_map[3].xyz;
@@ -130,6 +150,7 @@ vec2 ss_gradient_from_normal(vec3 n, vec3 here, out bool away)
     const float widest = (ss_flags & SS_FLAG_DISC) != 0u ? length(spread) : spread.x + spread.y;
     const float reach = frame.normal_map[0].w * (ab + bc * d.x + ca * d.y) + widest;
     away = reach <= 0.0;
+    side = frame.normal_map[0].w * ab < 0.0 ? -1.0 : 1.0;
     return vec2(-bc / ab, -ca / ab);
 }
 
@@ -146,19 +167,25 @@ ss_receiver ss_load_receiver(ivec2 pixel)
     r.valid = r.valid && all(greaterThanEqual(r.uv, vec2(0.0))) && all(lessThanEqual(r.uv, vec2(occ.size.xy))) &&
               occ.light.w - occ.light.z * r.g > 0.0;
     r.gradient = vec2(0.0);
+    r.side = 1.0;
     bool from_depth = true;
     if (SS_NORMALS) {
         const vec3 n = texelFetch(camera_normals, pixel + frame.area.xy, 0).xyz;
         if (dot(n, n) > 0.0) {
-            r.gradient = ss_gradient_from_normal(n, here, r.away);
+            r.gradient = ss_gradient_from_normal(n, here, r.away, r.side);
             from_depth = false;
         }
     }
-    r.smooth_surface = !from_depth;
     r.drift = 0.0;
+    bool smooth_surface = false;
     if (from_depth)
-        r.gradient = ss_gradient_from_depth(pixel, here, ss_eta(h, vec2(0.0)), r.drift, r.smooth_surface);
-    r.gradient = ss_clamp_gradient(r.gradient, r.g);
+        r.gradient = ss_gradient_from_depth(pixel, here, ss_eta(h, vec2(0.0)), r.drift, smooth_surface);
+    // Before the steepest planes are made less steep: their sides would change.
+    const vec2 steep = ss_finite_gradient(r.gradient);
+    if (smooth_surface)
+        r.side = ss_side(h, steep);
+    r.horizon = (ss_flags & SS_FLAG_OVERRIDE_BIAS) != 0u ? 0.0 : ss_horizon(r.uv, r.g, steep, r.side);
+    r.gradient = ss_clamp_gradient(steep, r.g);
     r.eta = ss_eta(h, r.gradient);
     return r;
 }

@@ -117,7 +117,8 @@ static void reference_image(const stage *s, const softsh_settings *settings, boo
             continue;
         }
         assert_true(reference_visibility(&s->map, layers, layer_count, &wanted, r, &o));
-        visibility[i] = 1.0 - (settings->technique == SOFTSH_TECHNIQUE_AREA ? fmin(o.area, 1.0) : o.bitmask);
+        visibility[i] =
+            reference_visible(r, settings->technique == SOFTSH_TECHNIQUE_AREA ? fmin(o.area, 1.0) : o.bitmask);
     }
     for (uint32_t i = 0; i < layer_count && contours; i++)
         reference_dual_grid_destroy(&grids[i]);

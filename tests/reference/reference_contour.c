@@ -219,6 +219,6 @@ bool reference_contour_visibility(const reference_dual_grid *grids, uint32_t lay
         occlusion = settings->merge == SOFTSH_MERGE_MAXIMUM ? fmax(occlusion, area) : fmin(occlusion + area, 1.0);
     }
     reference_contour_free(&contour);
-    *visibility = 1.0 - occlusion;
+    *visibility = reference_visible(receiver, occlusion);
     return success;
 }

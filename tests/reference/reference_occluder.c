@@ -101,7 +101,7 @@ bool reference_occludes(const reference_map *map, const reference_settings *sett
         return true;
     const double height = place[2] - plane_at(receiver, place) - lift(settings, receiver);
     const double margin = band_at(settings, receiver, place);
-    return receiver->trusted ? height > margin : fabs(height) > margin;
+    return receiver->side * height > margin;
 }
 
 /* Range of slope x + rate |x| for x from low to high. */
@@ -141,9 +141,9 @@ reference_status reference_block_status(const reference_map *map, const referenc
         below[1] += range[1];
     }
     const double slack = rounding * (fabs(above[0]) + fabs(above[1]) + fabs(below[0]) + fabs(below[1]));
-    if (high[2] < above[0] - slack && (receiver->trusted || low[2] > below[1] + slack))
+    if (receiver->side > 0 ? high[2] < above[0] - slack : low[2] > below[1] + slack)
         return REFERENCE_FREE;
-    if (all_above && (low[2] > above[1] + slack || (!receiver->trusted && high[2] < below[0] - slack)))
+    if (all_above && (receiver->side > 0 ? low[2] > above[1] + slack : high[2] < below[0] - slack))
         return REFERENCE_FULL;
     return REFERENCE_MIXED;
 }

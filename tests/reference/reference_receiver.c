@@ -163,7 +163,7 @@ static void gradient_from_depth(const neighbourhood *around, double flat_eta, do
     *drift = 2.0 * flat_eta / fmin(hypot(a[0], a[1]), hypot(b[0], b[1]));
 }
 
-bool reference_plane_trusted(const double offset[4][3], const double gradient[2], double flat_eta)
+bool reference_plane_smooth(const double offset[4][3], const double gradient[2], double flat_eta)
 {
     for (int k = 0; k < 4; ++k) {
         const double du = gradient[0] * offset[k][0], dv = gradient[1] * offset[k][1];
@@ -171,6 +171,48 @@ bool reference_plane_trusted(const double offset[4][3], const double gradient[2]
             return false;
     }
     return true;
+}
+
+/* Area of a convex polygon where a[0] x + a[1] y >= a[2]. */
+static double area_beyond(const double (*polygon)[2], int count, const double a[3])
+{
+    double kept[8][2], twice = 0.0;
+    int n = 0;
+    for (int k = 0; k < count; ++k) {
+        const double *const p = polygon[k], *const q = polygon[(k + 1) % count];
+        const double from = a[0] * p[0] + a[1] * p[1] - a[2], to = a[0] * q[0] + a[1] * q[1] - a[2];
+        if (from >= 0.0)
+            memcpy(kept[n++], p, sizeof(kept[0]));
+        if ((from >= 0.0) != (to >= 0.0)) {
+            for (int i = 0; i < 2; ++i)
+                kept[n][i] = p[i] + (q[i] - p[i]) * from / (from - to);
+            ++n;
+        }
+    }
+    for (int k = 0; k < n; ++k)
+        twice += kept[k][0] * kept[(k + 1) % n][1] - kept[(k + 1) % n][0] * kept[k][1];
+    return 0.5 * fabs(twice);
+}
+
+double reference_horizon(const reference_map *map, const double uvg[3], const double gradient[2], int side)
+{
+    /* A ray towards q climbs over the plane where n . q < c. */
+    double line[3];
+    for (int i = 0; i < 2; ++i)
+        line[i] = gradient[0] * map->a[0][i] + gradient[1] * map->a[1][i];
+    line[2] = map->epsilon - map->delta * uvg[2];
+    for (int i = 0; i < 2; ++i)
+        line[2] -= gradient[i] * (map->offset[i] - map->delta * uvg[i]);
+    double beyond;
+    if (map->directional) {
+        const double size = hypot(line[0], line[1]);
+        const double t = size > 0.0 ? fmin(fmax(line[2] / size, -1.0), 1.0) : line[2] < 0.0 ? -1.0 : 1.0;
+        beyond = (acos(t) - t * sqrt(1.0 - t * t)) / acos(-1.0);
+    } else {
+        static const double square[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+        beyond = area_beyond(square, 4, line) / 4.0;
+    }
+    return side < 0 ? 1.0 - beyond : beyond;
 }
 
 void reference_receiver_derive(reference_receiver *out, const reference_map *map, const reference_camera *camera,
@@ -202,19 +244,38 @@ void reference_receiver_derive(reference_receiver *out, const reference_map *map
     out->state = REFERENCE_RECEIVER_ACTIVE;
     /* An error of the camera's depth moves the point in (u, v) as well; on its own plane that is no error. */
     double moved[3];
+    bool smooth = false;
     derive_along(map, world, derivative, moved);
     if (has_normal) {
         reference_plane_gradient(map, uvg, normal, out->gradient);
-        out->trusted = true;
     } else {
         neighbourhood around;
         const double flat[2] = {0.0, 0.0};
         look_around(map, camera, image, x, y, uvg, &around);
         const double flat_eta = reference_eta(map, bias, uvg[2], moved[2], flat);
         gradient_from_depth(&around, flat_eta, out->gradient, &out->drift);
-        out->trusted = around.counts[0] && around.counts[1] && around.counts[2] && around.counts[3] &&
-                       reference_plane_trusted((const double(*)[3])around.offset, out->gradient, flat_eta);
+        smooth = around.counts[0] && around.counts[1] && around.counts[2] && around.counts[3] &&
+                 reference_plane_smooth((const double(*)[3])around.offset, out->gradient, flat_eta);
     }
+    /* Which side is the front, and where the horizon is, before the steepest planes are made less steep. */
+    for (int i = 0; i < 2; ++i)
+        if (!(fabs(out->gradient[i]) < 1e30))
+            out->gradient[i] = 0.0;
+    if (has_normal) {
+        /* Towards the light g grows. */
+        double nearer[3];
+        const double step = 1e-3 * (map->perspective ? uvg[2] : 1.0);
+        reference_map_unproject(map, (const double[3]){uvg[0], uvg[1], uvg[2] + step}, nearer);
+        for (int i = 0; i < 3; ++i)
+            nearer[i] -= world[i];
+        out->side = reference_dot(normal, nearer) < 0.0 ? -1 : 1;
+    } else {
+        /* The camera sees the front, and device depth grows away from it, unless it is reversed. Only a plane that its
+         * neighbours lie on may be turned away. */
+        const double leaves = moved[2] - out->gradient[0] * moved[0] - out->gradient[1] * moved[1];
+        out->side = smooth && (camera->far_depth > 0.0 ? leaves : -leaves) > 0.0 ? -1 : 1;
+    }
+    out->horizon = bias->override_bias || map->point ? 0.0 : reference_horizon(map, uvg, out->gradient, out->side);
     reference_gradient_clamp(map, uvg[2], out->gradient);
     const double away = moved[2] - out->gradient[0] * moved[0] - out->gradient[1] * moved[1];
     out->eta = reference_eta(map, bias, uvg[2], away, out->gradient);

@@ -37,7 +37,8 @@ typedef struct reference_receiver {
     double uvg[3];      /* set unless the state is NONE */
     double gradient[2]; /* dg/du, dg/dv of its plane; set when active, as the rest */
     double drift;       /* precision of the gradient: error of the plane per texel of distance */
-    bool trusted;       /* the plane may be relied on: what lies below it cannot occlude */
+    int side;           /* of its plane that the surface's front is on: 1 where g is greater, -1 where it is less */
+    double horizon;     /* share of the light behind its plane */
     double eta;
     bool override_bias;
     double bias;
@@ -60,7 +61,9 @@ void reference_plane_gradient(const reference_map *map, const double uvg[3], con
                               double gradient[2]);
 /* Whether all four neighbours, given by their (u, v, g) from the receiver, lie on the plane; `flat_eta` is the bias of
  * a plane without slope. */
-bool reference_plane_trusted(const double offset[4][3], const double gradient[2], double flat_eta);
+bool reference_plane_smooth(const double offset[4][3], const double gradient[2], double flat_eta);
+/* Share of the light behind the plane through `uvg`. */
+double reference_horizon(const reference_map *map, const double uvg[3], const double gradient[2], int side);
 /* Clamps a gradient to a slope of 89.5 degrees; a NaN becomes 0. */
 void reference_gradient_clamp(const reference_map *map, double g, double gradient[2]);
 /* The automatic bias. `away_per_depth` is how fast, in units of g, the point leaves the receiver's plane when the

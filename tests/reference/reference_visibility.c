@@ -279,6 +279,11 @@ static void merge_layer(const reference_settings *settings, const reference_occl
     }
 }
 
+double reference_visible(const reference_receiver *receiver, double occlusion)
+{
+    return fmax(1.0 - occlusion - (receiver->state == REFERENCE_RECEIVER_ACTIVE ? receiver->horizon : 0.0), 0.0);
+}
+
 bool reference_visibility(const reference_map *map, const float *const *layers, uint32_t layer_count,
                           const reference_settings *settings, const reference_receiver *receiver,
                           reference_occlusion *out)

@@ -34,6 +34,9 @@ void reference_cover_quad(softsh_pattern pattern, double q[4][2], reference_occl
 /* Drops the samples of out->mask beside the light and counts. */
 void reference_count(const reference_map *map, softsh_pattern pattern, reference_occlusion *out);
 
+/* Visible share of the light, given that of what hides it: the receiver's horizon hides some too. */
+double reference_visible(const reference_receiver *receiver, double occlusion);
+
 /* `layers` are layer_count fan depth images of the map's size, row by row. False where the definitions have no answer:
  * a micropatch under a light that is not axis-aligned, or an unsupported primitive. */
 bool reference_visibility(const reference_map *map, const float *const *layers, uint32_t layer_count,

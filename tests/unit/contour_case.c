@@ -75,7 +75,7 @@ reference_receiver random_receiver(uint64_t *state, const reference_map *map)
     receiver.uvg[2] = fan_depth(map, reference_random_range(state, 0.0, 0.3));
     for (int i = 0; i < 2; ++i)
         receiver.gradient[i] = step * reference_random_range(state, -0.01, 0.01);
-    receiver.trusted = reference_random(state) % 2;
+    receiver.side = reference_random(state) % 2 ? 1 : -1;
     receiver.drift = reference_random(state) % 3 ? 0.0 : 1e-4 * step;
     if (reference_random(state) % 8 == 0) {
         receiver.override_bias = true;

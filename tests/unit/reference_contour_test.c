@@ -197,7 +197,7 @@ static void lone_texels_are_diamonds(void **unused)
         assert_true(reference_dual_grid_create(&grid, &map, &settings, g));
         /* Straight under the light's centre, so that all of the occluders are inside the light. */
         const reference_receiver receiver = {
-            .state = REFERENCE_RECEIVER_ACTIVE, .uvg = {17.5, 14.2, 0.25}, .eta = 1e-6};
+            .state = REFERENCE_RECEIVER_ACTIVE, .uvg = {17.5, 14.2, 0.25}, .eta = 1e-6, .side = 1};
         assert_true(reference_contour_extract(&grid, &map, &settings, &receiver, 1, all_samples(&grid),
                                               REFERENCE_EXTRACT_SCAN, NULL, &contour));
         assert_int_equal(contour.count, 4 * occluders);

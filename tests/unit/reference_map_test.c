@@ -616,43 +616,73 @@ static void neighbours_across_edges_are_left_out(void **unused)
 }
 
 /* All four neighbours on the plane, within the depths' precision and 3 % of their own slope. */
-static void planes_are_trusted_if_all_neighbours_agree(void **unused)
+static void planes_are_smooth_if_all_neighbours_agree(void **unused)
 {
     (void)unused;
     const double gradient[2] = {0.1, -0.2}, eta = 0.001;
     const double flat[4][3] = {{-1, 0, -0.1}, {1, 0.5, 0.0}, {0, -1, 0.2}, {0.5, 1, -0.15}};
     const double room[4] = {0.004 + 0.003, 0.004 + 0.006, 0.004 + 0.006, 0.004 + 0.0075};
-    assert_true(reference_plane_trusted(flat, gradient, eta));
+    assert_true(reference_plane_smooth(flat, gradient, eta));
     for (int k = 0; k < 4; ++k) {
         for (int sign = -1; sign <= 1; sign += 2) {
             double bent[4][3];
             memcpy(bent, flat, sizeof(bent));
             bent[k][2] = flat[k][2] + sign * (room[k] - 1e-9);
-            assert_true(reference_plane_trusted((const double(*)[3])bent, gradient, eta));
+            assert_true(reference_plane_smooth((const double(*)[3])bent, gradient, eta));
             bent[k][2] = flat[k][2] + sign * (room[k] + 1e-9);
-            assert_false(reference_plane_trusted((const double(*)[3])bent, gradient, eta));
+            assert_false(reference_plane_smooth((const double(*)[3])bent, gradient, eta));
         }
     }
-    stage s;
-    reference_receiver receiver;
-    build_stage(&s, REFERENCE_DEPTH_NORMAL);
-    const reference_camera_image image = {s.depth, NULL}, with_normals = {s.depth, s.normals};
-    for (uint32_t y = 0; y < 8; ++y) {
-        for (uint32_t x = 0; x < 12; ++x) {
-            const bool inner = x > 0 && x < 11 && y > 0 && y < 7;
-            reference_receiver_derive(&receiver, &s.map, &s.camera, &image, &exact_bias, x, y);
-            assert_int_equal(receiver.trusted, inner);
-            reference_receiver_derive(&receiver, &s.map, &s.camera, &with_normals, &exact_bias, x, y);
-            assert_true(receiver.trusted);
+}
+
+/* What of the light lies behind a plane: against counting points of the light, from rays in map space. */
+static void horizons_are_shares_of_the_light(void **unused)
+{
+    (void)unused;
+    uint64_t state = 23;
+    for (int round = 0; round < 400; ++round) {
+        stage s;
+        build_stage(&s, REFERENCE_DEPTH_NORMAL);
+        const double uvg[3] = {reference_random_range(&state, 0, s.map.width),
+                               reference_random_range(&state, 0, s.map.height), 0.05};
+        double gradient[2];
+        for (int i = 0; i < 2; ++i)
+            gradient[i] =
+                reference_random_range(&state, -1, 1) * pow(10, reference_random_range(&state, -3, 2)) / s.map.a[0][0];
+        int behind = 0;
+        const int n = 64;
+        for (int j = 0; j < n * n; ++j) {
+            const double q[2] = {(2 * (j % n) + 1.0) / n - 1, (2 * (j / n) + 1.0) / n - 1};
+            double uv[2];
+            reference_map_segment(&s.map, uvg, q, uvg[2] + 1e-3, uv);
+            behind += uvg[2] + gradient[0] * (uv[0] - uvg[0]) + gradient[1] * (uv[1] - uvg[1]) >= uvg[2] + 1e-3;
+        }
+        const double share = reference_horizon(&s.map, uvg, gradient, 1);
+        assert_near(share, behind / (double)(n * n), 2.0 / n);
+        assert_near(reference_horizon(&s.map, uvg, gradient, -1), 1.0 - share, 1e-12);
+    }
+}
+
+/* The camera's side of a plane and the normal's are the same, and the floor's is the light's. */
+static void surfaces_have_a_front(void **unused)
+{
+    (void)unused;
+    static const reference_depth_range ranges[] = {REFERENCE_DEPTH_NORMAL, REFERENCE_DEPTH_REVERSED};
+    for (size_t k = 0; k < sizeof(ranges) / sizeof(ranges[0]); ++k) {
+        stage s;
+        build_stage(&s, ranges[k]);
+        const reference_camera_image image = {s.depth, NULL}, with_normals = {s.depth, s.normals};
+        for (uint32_t y = 0; y < 8; ++y) {
+            for (uint32_t x = 0; x < 12; ++x) {
+                reference_receiver receiver;
+                reference_receiver_derive(&receiver, &s.map, &s.camera, &image, &exact_bias, x, y);
+                assert_int_equal(receiver.side, 1);
+                assert_true(receiver.horizon == 0.0);
+                reference_receiver_derive(&receiver, &s.map, &s.camera, &with_normals, &exact_bias, x, y);
+                assert_int_equal(receiver.side, 1);
+            }
         }
     }
-    /* A step on one side leaves the plane alone and takes the trust, a normal of zero as well. */
-    s.depth[4 * 12 + 5] = s.depth[4 * 12 + 5] - 0.01f;
-    memset(s.normals, 0, sizeof(s.normals));
-    reference_receiver_derive(&receiver, &s.map, &s.camera, &image, &exact_bias, 6, 4);
-    assert_false(receiver.trusted);
-    reference_receiver_derive(&receiver, &s.map, &s.camera, &with_normals, &exact_bias, 6, 4);
-    assert_false(receiver.trusted);
 }
 
 static void receivers_behind_the_light_are_known(void **unused)
@@ -696,7 +726,9 @@ int main(void)
         cmocka_unit_test(orthographic_cameras_have_right_down_and_forward),
         cmocka_unit_test(what_is_no_receiver),
         cmocka_unit_test(neighbours_across_edges_are_left_out),
-        cmocka_unit_test(planes_are_trusted_if_all_neighbours_agree),
+        cmocka_unit_test(planes_are_smooth_if_all_neighbours_agree),
+        cmocka_unit_test(horizons_are_shares_of_the_light),
+        cmocka_unit_test(surfaces_have_a_front),
         cmocka_unit_test(receivers_behind_the_light_are_known),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -291,7 +291,7 @@ static void primitives_are_few(void **unused)
             .state = REFERENCE_RECEIVER_ACTIVE,
             .uvg = {reference_random_range(&state, 0, side), reference_random_range(&state, 0, side), 1.0 / 9.0},
             .eta = 1e-6,
-            .trusted = true};
+            .side = 1};
         const reference_rect kernel = reference_dual_grid_kernel(&grid, &map, &settings, &receiver, highest(&grid));
         reference_outline outline = {0};
         reference_contour contour = {0};

@@ -37,7 +37,7 @@ static reference_map table_map(double half, double behind, uint32_t size)
 
 static reference_receiver at(double u, double v, double g)
 {
-    return (reference_receiver){.state = REFERENCE_RECEIVER_ACTIVE, .uvg = {u, v, g}};
+    return (reference_receiver){.state = REFERENCE_RECEIVER_ACTIVE, .uvg = {u, v, g}, .side = 1};
 }
 
 static reference_occlusion evaluate(const reference_map *map, const float *g, const reference_settings *settings,
@@ -543,18 +543,18 @@ static void bias_leaves_out_what_it_should(void **unused)
     assert_int_equal(evaluate(&map, g, &settings, &receiver).occluded, 0);
     g[4 * side + 4] = 0.3001f;
     assert_true(evaluate(&map, g, &settings, &receiver).occluded > 0);
-    /* An occluder above the receiver but below its plane is not the receiver's own surface. */
+    /* An occluder above the receiver but behind its plane hides only what is below the horizon. */
     receiver.gradient[0] = 0.4;
     receiver.gradient[1] = 0.0; /* plane 0.45, half a texel of slope 0.2 */
     receiver.eta = 0.0;
     receiver.uvg[2] = 0.2;
     receiver.uvg[0] = 3.0; /* plane 0.8 */
     g[4 * side + 4] = 0.5f;
-    assert_true(evaluate(&map, g, &settings, &receiver).area > 0.0);
-    /* Unless its plane is trusted: then it is below the horizon. */
-    receiver.trusted = true;
     assert_true(evaluate(&map, g, &settings, &receiver).area == 0.0);
-    receiver.trusted = false;
+    /* On a surface whose front is the plane's other side that is in front. */
+    receiver.side = -1;
+    assert_true(evaluate(&map, g, &settings, &receiver).area > 0.0);
+    receiver.side = 1;
     receiver.uvg[0] = 4.0; /* plane 0.4, and 0.5 is within it */
     assert_true(evaluate(&map, g, &settings, &receiver).area == 0.0);
     /* With an override only the depth counts. */
@@ -597,8 +597,8 @@ static void microquads_keep_to_their_band(void **unused)
             settings.level = (uint32_t)level;
             settings.aggregation = nearest ? SOFTSH_AGGREGATION_NEAREST : SOFTSH_AGGREGATION_SAMPLED;
             for (int above = -1; above <= 1; ++above) {
-                for (int trusted = 0; trusted < 2; ++trusted) {
-                    receiver.trusted = trusted != 0;
+                for (int sign = -1; sign < 2; sign += 2) {
+                    receiver.side = sign;
                     for (int outside = 0; outside < 2; ++outside) {
                         /* Every sample at the same height over the plane at its place. */
                         const double height = above * (band + (outside ? 1e-6 : -1e-6)) + lift;
@@ -610,7 +610,7 @@ static void microquads_keep_to_their_band(void **unused)
                                 g[y * side + x] = (float)(0.25 + height + 0.02 * (u - 4.0) - 0.01 * (v - 4.0));
                             }
                         }
-                        const bool hidden = above && outside && (above > 0 || !trusted);
+                        const bool hidden = above && outside && above == sign;
                         assert_int_equal(evaluate(&map, g, &settings, &receiver).area > 0.0, hidden);
                     }
                 }
