@@ -3,14 +3,17 @@ set(SOFTSHADOW_SHADERS
     hierarchy/hierarchy_convert
     hierarchy/hierarchy_sample
     hierarchy/hierarchy_reduce
+    hierarchy/hierarchy_merge
     hierarchy/hierarchy_plan
     hierarchy/hierarchy_widen
     classify/classify_columns
     classify/classify_tiles
     classify/classify_pixels
+    classify/classify_blocks
     evaluate/bitmask_evaluate
     evaluate/contour_evaluate
     evaluate/interpolate
+    evaluate/interpolate_blocks
     evaluate/hard_evaluate
     filter/post_filter)
 

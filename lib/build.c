@@ -92,13 +92,13 @@ static void fill_header(const softsh_build_info *info, const build_plan *plan, s
     out->depths = (ss_vec4){(float)eta, (float)map->texel[0], (float)map->texel[1], (float)farthest};
     /* The square of the disc's area stands in for it where areas are accumulated. */
     out->extent.x = light->disc ? 0.886226925f : 1.0f;
-    out->size = (ss_uvec4){plan->extent.width, plan->extent.height, info->map_count, 0};
+    out->size = (ss_uvec4){plan->extent.width, plan->extent.height, info->map_count, plan->layout.pyramids - 1};
     const softshi_occluder_layout *layout = &plan->layout;
     out->levels = (ss_uvec4){layout->top, layout->join, layout->wide_levels,
                              softshi_level_size(plan->extent.width, layout->join)};
     /* Creation made sure that all of it can be counted in 32 bits. */
-    out->strides = (ss_uvec4){(uint32_t)layout->layer_quads, (uint32_t)layout->layer_texels, layout->wide_offset,
-                              layout->wide_texels};
+    out->strides = (ss_uvec4){(uint32_t)layout->layer_quads, (uint32_t)layout->pyramid_texels,
+                              (uint32_t)layout->wide_offset, layout->wide_texels};
     for (uint32_t i = 0; i <= layout->top; i++)
         out->pyramid[i] = (ss_uvec4){layout->offsets[i], softshi_level_size(plan->extent.width, i), layout->quads[i],
                                      softshi_level_quads(plan->extent.width, i)};
@@ -155,7 +155,6 @@ softsh_result softsh_cmd_build_occluders(VkCommandBuffer cmd, softsh_occluders *
     softshi_record_end(&recorder);
 
     o->built = true;
-    o->wide = plan.layout.wide_levels > 0;
     o->layered = info->map_count > 1;
     o->map = plan.maps[0];
     o->light = plan.light;

@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "techniques/settings.h"
+
 /* The largest minStorageBufferOffsetAlignment and minUniformBufferOffsetAlignment Vulkan allows. */
 enum { ALIGNMENT = 256 };
 
@@ -42,8 +44,8 @@ void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_
         out->top++;
     while (softshi_level_size(side, out->top) > 1);
     for (uint32_t i = 1; i <= out->top; i++) {
-        out->offsets[i] = out->wide_offset;
-        out->wide_offset += softshi_level_size(extent.width, i) * softshi_level_size(extent.height, i);
+        out->offsets[i] = (uint32_t)out->pyramid_texels;
+        out->pyramid_texels += softshi_level_size(extent.width, i) * softshi_level_size(extent.height, i);
     }
     for (uint32_t i = 0; i <= out->top; i++) {
         out->quads[i] = (uint32_t)out->layer_quads;
@@ -60,22 +62,49 @@ void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_
         while (maximum(width, height) >> (out->wide_levels + 1))
             out->wide_levels++;
     }
-    out->layer_texels = out->wide_offset + (VkDeviceSize)out->wide_levels * out->wide_texels;
+    out->pyramids = layers > 1 ? layers + 1 : 1;
+    out->wide_offset = out->pyramids * out->pyramid_texels;
+    const VkDeviceSize texels = out->wide_offset + (VkDeviceSize)out->wide_levels * out->wide_texels;
     VkDeviceSize end = 0;
     out->header = append(&end, sizeof(ss_occluders) + sizeof(ss_plan));
     out->fan_depth = append(&end, out->layer_quads * layers * 4 * sizeof(float));
-    out->ranges = append(&end, out->layer_texels * layers * 2 * sizeof(float));
+    out->ranges = append(&end, texels * 2 * sizeof(float));
     out->buffer_size = end;
 }
 
-void softshi_layout_view(VkExtent2D extent, uint32_t planes, softshi_view_layout *out)
+VkDeviceSize softshi_layout_lists(const softsh_settings *settings, VkDeviceSize tiles, ss_uvec4 *lists)
+{
+    const softshi_packets packets = softshi_settings_packets(settings);
+    const uint32_t row = (SS_TILE_X + packets.block - 1) / packets.block, blocks = row * row;
+    VkDeviceSize first[4], end = 3 * tiles;
+    const VkDeviceSize words[4] = {
+        2 * SS_TILE_PIXELS,
+        packets.side[SS_LIST_LARGE] ? SS_PACKET_WORDS * blocks : 0,
+        packets.side[SS_LIST_SMALL] ? SS_PACKET_WORDS * SS_TILE_PIXELS / 4 : 0,
+        !settings->sparse                       ? 0
+        : softshi_settings_in_packets(settings) ? SS_PACKET_WORDS * blocks
+                                                : SS_INTERPOLATED_WORDS,
+    };
+    for (int i = 0; i < 4; i++) {
+        first[i] = end;
+        end += words[i] * tiles;
+    }
+    /* No image has so many tiles that this does not fit. */
+    *lists = (ss_uvec4){(uint32_t)first[0], (uint32_t)first[1], (uint32_t)first[2], (uint32_t)first[3]};
+    return end;
+}
+
+void softshi_layout_view(VkExtent2D extent, const softsh_settings *settings, softshi_view_layout *out)
 {
     const VkDeviceSize tiles =
         (VkDeviceSize)((extent.width + SS_TILE_X - 1) / SS_TILE_X) * ((extent.height + SS_TILE_Y - 1) / SS_TILE_Y);
+    /* Values kept per pixel. */
+    const uint32_t planes = settings->filter_passes > 0 ? 3 : settings->sparse ? 1 : 0;
+    ss_uvec4 lists;
     VkDeviceSize end = 0;
     out->frame = append(&end, sizeof(ss_frame));
     out->control = append(&end, sizeof(ss_control));
-    out->tiles = append(&end, tiles * SS_TILE_WORDS * sizeof(uint32_t));
+    out->tiles = append(&end, softshi_layout_lists(settings, tiles, &lists) * sizeof(uint32_t));
     out->filter = append(&end, planes ? (VkDeviceSize)extent.width * extent.height * planes * sizeof(float) : 4);
     out->buffer_size = end;
 }

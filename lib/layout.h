@@ -18,14 +18,15 @@ uint32_t softshi_level_quads(uint32_t texels, uint32_t level);
 typedef struct softshi_occluder_layout {
     softshi_range header, fan_depth, ranges; /* in the buffer */
     VkDeviceSize buffer_size;
-    VkDeviceSize layer_texels;       /* of `ranges`: a layer's pyramid, then its wide levels */
+    VkDeviceSize pyramid_texels;     /* of `ranges`, of each layer */
+    uint32_t pyramids;               /* one for each layer, and of several one over all; then come the wide levels */
     uint32_t top;                    /* levels above level 0 */
     uint32_t offsets[SS_MAX_LEVELS]; /* first texel of a pyramid level */
     VkDeviceSize layer_quads;        /* of `fan_depth`, four depths each: a layer's levels 0 to top */
     uint32_t quads[SS_MAX_LEVELS];   /* first quad of a level's sampled fan depths */
     uint32_t join;                   /* pyramid level the wide part starts from; `top` without one */
     uint32_t wide_levels;            /* 0 without a wide part */
-    uint32_t wide_offset;            /* first texel of wide level 1 */
+    VkDeviceSize wide_offset;        /* first texel of wide level 1 */
     uint32_t wide_texels;            /* room for a wide level */
 } softshi_occluder_layout;
 
@@ -38,7 +39,10 @@ typedef struct softshi_view_layout {
     VkDeviceSize buffer_size;
 } softshi_view_layout;
 
-/* `planes`: values kept per pixel. */
-void softshi_layout_view(VkExtent2D extent, uint32_t planes, softshi_view_layout *out);
+/* First words of the lists in the tiles buffer of so many tiles, as ss_frame has them; returns the words of all. */
+VkDeviceSize softshi_layout_lists(const softsh_settings *settings, VkDeviceSize tiles, ss_uvec4 *lists);
+
+/* For resolved settings. */
+void softshi_layout_view(VkExtent2D extent, const softsh_settings *settings, softshi_view_layout *out);
 
 #endif

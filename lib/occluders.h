@@ -11,7 +11,7 @@
 enum { SOFTSHI_NAME_SIZE = 64 };
 
 typedef struct softshi_hierarchy_pipelines {
-    softshi_pipeline convert, sample, reduce, plan, widen_first, widen;
+    softshi_pipeline convert, sample, reduce, merge, plan, widen_first, widen;
 } softshi_hierarchy_pipelines;
 
 struct softsh_occluders {
@@ -31,7 +31,7 @@ struct softsh_occluders {
 
     /* Of the last recorded build. */
     bool built;
-    bool wide, layered; /* has wide levels, has more than one layer */
+    bool layered; /* more than one layer */
     softshi_map_space map;
     softshi_light_space light;
 };

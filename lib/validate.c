@@ -111,6 +111,8 @@ softsh_result softshi_check_settings(const softsh_context *context, const softsh
         return INVALID("softsh_settings::budget is %u, expected at most 4096", s->budget);
     if (s->min_level > 13)
         return INVALID("softsh_settings::min_level is %u, expected at most 13", s->min_level);
+    if ((unsigned)s->packet > SOFTSH_PACKET_4X4)
+        return INVALID("softsh_settings::packet is %d, expected a softsh_packet", (int)s->packet);
     if (s->filter_passes > 16)
         return INVALID("softsh_settings::filter_passes is %u, expected at most 16", s->filter_passes);
     return SOFTSH_SUCCESS;

@@ -60,23 +60,17 @@ static softsh_result create_sets(softsh_view *v, uint32_t recordings)
 
 static softsh_result create_pipelines(softsh_view *v)
 {
-    softsh_result result = SOFTSH_SUCCESS;
-    for (int kind = 0; kind < SOFTSHI_KINDS && result == SOFTSH_SUCCESS; kind++) {
-        softshi_specialization constants = softshi_settings_specialize(&v->settings, v->normals, v->stats);
-        constants.values[SS_SPEC_ACCEL_WIDE] = (kind & SOFTSHI_KIND_WIDE) != 0;
-        constants.values[SS_SPEC_LAYERED] = (kind & SOFTSHI_KIND_LAYERED) != 0;
-        result = softshi_classify_create(v, kind, &constants);
-        if (result == SOFTSH_SUCCESS)
-            result = v->settings.technique == SOFTSH_TECHNIQUE_CONTOUR ? softshi_contour_create(v, kind, &constants)
-                                                                       : softshi_bitmask_create(v, kind, &constants);
-        constants.values[SS_SPEC_LAYERED] = 1;
-        if (result == SOFTSH_SUCCESS && kind == 0)
-            result = softshi_hard_create(v, &constants);
-        if (result == SOFTSH_SUCCESS && kind == 0 && v->settings.sparse)
-            result = softshi_interpolate_create(v, &constants);
-        if (result == SOFTSH_SUCCESS && kind == 0 && v->settings.filter_passes > 0)
-            result = softshi_post_filter_create(v, &constants);
-    }
+    const softshi_specialization constants = softshi_settings_specialize(&v->settings, v->normals, v->stats);
+    softsh_result result = softshi_classify_create(v, &constants);
+    if (result == SOFTSH_SUCCESS)
+        result = softshi_settings_in_packets(&v->settings) ? softshi_contour_create(v, &constants)
+                                                           : softshi_bitmask_create(v, &constants);
+    if (result == SOFTSH_SUCCESS && v->settings.sparse)
+        result = softshi_interpolate_create(v, &constants);
+    if (result == SOFTSH_SUCCESS)
+        result = softshi_hard_create(v, &constants);
+    if (result == SOFTSH_SUCCESS && v->settings.filter_passes > 0)
+        result = softshi_post_filter_create(v, &constants);
     return result;
 }
 
@@ -100,7 +94,7 @@ softsh_result softsh_view_create(softsh_context *context, const softsh_view_info
     v->settings = softshi_settings_resolve(info->settings);
     v->stats = info->stats != 0;
     v->normals = info->normals != 0;
-    softshi_layout_view(v->max_extent, v->settings.filter_passes > 0 ? 3 : v->settings.sparse ? 1 : 0, &v->layout);
+    softshi_layout_view(v->max_extent, &v->settings, &v->layout);
     result = check_limits(v);
     if (result == SOFTSH_SUCCESS)
         result = softshi_block_create(context, &v->block, v->layout.buffer_size, v->name, "view scratch");
@@ -124,15 +118,15 @@ void softsh_view_destroy(softsh_view *v)
         return;
     const softsh_context *context = v->context;
     softshi_view_pipelines *p = &v->pipelines;
-    for (int kind = 0; kind < SOFTSHI_KINDS; kind++) {
-        softshi_pipeline_destroy(context, &p->classify_tiles[kind]);
-        softshi_pipeline_destroy(context, &p->classify_pixels[kind]);
-        softshi_pipeline_destroy(context, &p->evaluate[kind]);
-    }
     softshi_pipeline_destroy(context, &p->classify_columns);
+    softshi_pipeline_destroy(context, &p->classify_tiles);
+    softshi_pipeline_destroy(context, &p->classify_pixels);
+    for (int list = 0; list < SS_LISTS; list++)
+        softshi_pipeline_destroy(context, &p->evaluate[list]);
+    softshi_pipeline_destroy(context, &p->evaluate_layered);
+    softshi_pipeline_destroy(context, &p->interpolate);
     softshi_pipeline_destroy(context, &p->hard);
     softshi_pipeline_destroy(context, &p->filter);
-    softshi_pipeline_destroy(context, &p->interpolate);
     if (v->pool)
         context->vk.DestroyDescriptorPool(context->device, v->pool, context->allocator);
     softshi_block_destroy(context, &v->block);

@@ -8,13 +8,13 @@
 #include "vulkan/memory.h"
 #include "vulkan/pass.h"
 
-/* Passes that query the hierarchy come in kinds, for what a view cannot know: occluders without and with wide levels
- * (bit 0), with one layer and with more (bit 1). */
-enum { SOFTSHI_KIND_WIDE = 1, SOFTSHI_KIND_LAYERED = 2, SOFTSHI_KINDS = 4 };
-
+/* Passes that this view's settings do not need are not there. */
 typedef struct softshi_view_pipelines {
-    softshi_pipeline classify_tiles[SOFTSHI_KINDS], classify_pixels[SOFTSHI_KINDS], evaluate[SOFTSHI_KINDS];
-    softshi_pipeline classify_columns, hard, filter, interpolate;
+    softshi_pipeline classify_columns, classify_tiles;
+    softshi_pipeline classify_pixels; /* or, for techniques that evaluate packets, of blocks of them */
+    softshi_pipeline evaluate[SS_LISTS]; /* by what one invocation evaluates */
+    softshi_pipeline evaluate_layered;   /* bitmasks of occluders that have more than one layer */
+    softshi_pipeline interpolate, hard, filter;
 } softshi_view_pipelines;
 
 struct softsh_view {
@@ -36,7 +36,6 @@ struct softsh_view {
 typedef struct softshi_visibility {
     softsh_view *view;
     const softsh_occluders *occluders;
-    int kind; /* of pipelines */
     softshi_recorder *recorder;
     ss_frame frame;
 } softshi_visibility;

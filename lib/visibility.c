@@ -75,6 +75,8 @@ static void fill_frame(const softsh_view *v, const softsh_visibility_info *info,
     frame->flags[0].x |= (info->occluders->map.orthographic ? SS_FLAG_ORTHOGRAPHIC : 0u) |
                          (info->occluders->light.disc ? SS_FLAG_DISC : 0u) |
                          (info->override_bias ? SS_FLAG_OVERRIDE_BIAS : 0u);
+    softshi_layout_lists(&v->settings, frame->tiles.z, &frame->lists);
+    frame->cost = (ss_vec4){1.0f, 2.0f, 1.0f, 0.0f};
     frame->quality.x = v->settings.budget;
     frame->quality.y = v->settings.min_level;
     frame->quality.z = area.extent.width * area.extent.height;
@@ -137,15 +139,15 @@ softsh_result softsh_cmd_compute_visibility(VkCommandBuffer cmd, softsh_view *v,
     softshi_visibility visibility = {
         .view = v,
         .occluders = o,
-        .kind = (o->wide ? SOFTSHI_KIND_WIDE : 0) | (o->layered ? SOFTSHI_KIND_LAYERED : 0),
     };
     result = softshi_camera_space_create(v->context, info->cameras, &info->occluders->map, &visibility.frame);
     if (result != SOFTSH_SUCCESS)
         return result;
     fill_frame(v, info, area, &visibility.frame);
 
-    const ss_control cleared = {
-        .pixels_args = {0, 1, 1, 0}, .evaluate_args = {{0, 1, 1, 0}, {0, 1, 1, 0}}, .interpolate_args = {0, 1, 1, 0}};
+    ss_control cleared = {.pixels_args = {0, 1, 1, 0}, .interpolate_args = {0, 1, 1, 0}};
+    for (int i = 0; i < 2 * SS_LISTS; i++)
+        cleared.evaluate_args[i] = (ss_uvec4){0, 1, 1, 0};
     softshi_recorder recorder;
     visibility.recorder = &recorder;
     softshi_record_begin(&recorder, v->context, cmd, info->timestamps, v->name);

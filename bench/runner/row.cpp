@@ -209,10 +209,14 @@ std::string to_json(const Row &row)
     add_optional(counts, "active", count(row, &softsh_stats::active));
     add_optional(counts, "nodes_per_active", per_active(row, &softsh_stats::nodes));
     add_optional(counts, "primitives_per_active", per_active(row, &softsh_stats::primitives));
+    add_optional(counts, "visited_per_active", per_active(row, &softsh_stats::visited));
     add_optional(counts, "tiles", count(row, &softsh_stats::tiles));
     add_optional(counts, "undecided_tiles", count(row, &softsh_stats::undecided_tiles));
     add_optional(counts, "clamped", count(row, &softsh_stats::clamped));
     add_optional(counts, "interpolated", count(row, &softsh_stats::interpolated));
+    add_optional(counts, "packets", count(row, &softsh_stats::packets));
+    add_optional(counts, "incoherent", count(row, &softsh_stats::incoherent));
+    add_optional(counts, "diverged", count(row, &softsh_stats::diverged));
     std::optional<double> built, skipped;
     if (row.stats) {
         built = row.stats->wide_levels_built;

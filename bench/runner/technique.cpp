@@ -138,6 +138,15 @@ const std::vector<Setting> &setting_list()
          [](Technique &t, const std::string &v) { t.library.min_level = number("level", v, 0, 13); }},
         {"hierarchy", "on | off: prune kernels and classify", ON_LIBRARY,
          [](Technique &t, const std::string &v) { t.library.no_hierarchy = !choose("hierarchy", v, on_off); }},
+        {"packet", "1x1 | 2x2 | 3x3 | 4x4 | auto: pixels that share a search for contours", ON_CONTOUR,
+         [](Technique &t, const std::string &v) {
+             t.library.packet = static_cast<softsh_packet>(choose("packet", v,
+                                                                  {{"1x1", SOFTSH_PACKET_1X1},
+                                                                   {"2x2", SOFTSH_PACKET_2X2},
+                                                                   {"3x3", SOFTSH_PACKET_3X3},
+                                                                   {"4x4", SOFTSH_PACKET_4X4},
+                                                                   {"auto", SOFTSH_PACKET_DEFAULT}}));
+         }},
         {"sparse", "on | off: interpolate pixels between others", ON_LIBRARY,
          [](Technique &t, const std::string &v) { t.library.sparse = choose("sparse", v, on_off); }},
         {"filter", "N: passes of the post filter", ON_AREA | ON_BITMASK,

@@ -52,6 +52,17 @@ typedef enum softsh_merge {
     SOFTSH_MERGE_MAXIMUM = 2  /* the darkest single layer, as Atty et al. 2006 do for front and back faces */
 } softsh_merge;
 
+/* Neighbouring pixels that share one search for contours; contour only, see Yang et al. 2009. Packets that do not pay,
+ * or are not of one contour, are evaluated pixel by pixel. With `sparse`, packets are of every second pixel of 4 x 4,
+ * and of what is left of them. No result depends on it but for rounding. */
+typedef enum softsh_packet {
+    SOFTSH_PACKET_DEFAULT = 0, /* 4 x 4, 2 x 2 or single pixels, chosen for each part of the image */
+    SOFTSH_PACKET_1X1 = 1,
+    SOFTSH_PACKET_2X2 = 2,
+    SOFTSH_PACKET_3X3 = 3,
+    SOFTSH_PACKET_4X4 = 4
+} softsh_packet;
+
 typedef struct softsh_settings {
     uint32_t struct_size;
     softsh_technique technique;
@@ -67,6 +78,7 @@ typedef struct softsh_settings {
     uint32_t sparse;        /* nonzero: evaluate every second pixel of every second row, and of the rest those whose
                                neighbours differ or lie on other surfaces; interpolate the others. Ignored with
                                filter_passes */
+    softsh_packet packet;   /* contour only */
     uint32_t no_hierarchy;  /* nonzero: neither prune kernels nor classify; for comparisons */
 } softsh_settings;
 

@@ -209,12 +209,16 @@ typedef struct softsh_stats {
         lit; /* found lit by classification (or by the one comparison of a light without size); background included */
     uint64_t umbra;             /* found dark likewise */
     uint64_t active;            /* neither: evaluated one by one, or interpolated */
-    uint64_t nodes;             /* four per query of the hierarchy and layer */
+    uint64_t nodes;             /* four per query of the hierarchy */
     uint64_t primitives;        /* micro-occluders, or edges of contours, projected */
     uint64_t tiles;             /* 8 x 8 pixel tiles in the render area */
     uint64_t undecided_tiles;   /* needed a look at their pixels */
     uint64_t clamped;           /* active pixels whose level the budget, or the bound on one pixel's work, coarsened */
     uint64_t interpolated;      /* active pixels that took their neighbours' mean instead */
+    uint64_t packets;           /* packets of pixels that evaluation began with; contour only, as the rest */
+    uint64_t incoherent;        /* of these, with pixels that did not belong together and were evaluated apart */
+    uint64_t diverged;          /* of these, not of one contour: all pixels were evaluated apart */
+    uint64_t visited;           /* samples and blocks of samples looked at for contours, by packets and pixels */
     uint32_t wide_levels_built; /* MSSM levels of the occluders' last build */
     uint32_t wide_levels_skipped; /* MSSM levels that no kernel of this light and map can ask for */
 } softsh_stats;

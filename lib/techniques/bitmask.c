@@ -3,8 +3,15 @@
  */
 #include "techniques.h"
 
-softsh_result softshi_bitmask_create(softsh_view *view, int kind, const softshi_specialization *constants)
+softsh_result softshi_bitmask_create(softsh_view *view, const softshi_specialization *constants)
 {
-    return softshi_pipeline_create(view->context, SOFTSHI_SHADER_BITMASK_EVALUATE, constants,
-                                   &view->pipelines.evaluate[kind]);
+    softshi_pipeline *const pipelines[] = {&view->pipelines.evaluate[SS_LIST_PIXELS],
+                                           &view->pipelines.evaluate_layered};
+    softsh_result result = SOFTSH_SUCCESS;
+    for (uint32_t layered = 0; layered < 2 && result == SOFTSH_SUCCESS; layered++) {
+        softshi_specialization own = *constants;
+        own.values[SS_SPEC_LAYERED] = layered;
+        result = softshi_pipeline_create(view->context, SOFTSHI_SHADER_BITMASK_EVALUATE, &own, pipelines[layered]);
+    }
+    return result;
 }

@@ -1,26 +1,27 @@
-/* Lit, umbra or penumbra: first whole tiles, then the pixels of the tiles that are undecided (search area refinement of
- * Schwarz and Stamminger 2007, section 5; tiles and compaction are ours). Each stage dispatches the next. */
+/* Lit, umbra or penumbra: first whole tiles, then the pixels, or blocks of pixels, of the tiles that are undecided
+ * (search area refinement of Schwarz and Stamminger 2007, section 5; tiles, blocks and compaction are ours). Each stage
+ * dispatches the next. */
+#include "settings.h"
 #include "techniques.h"
 
-softsh_result softshi_classify_create(softsh_view *view, int kind, const softshi_specialization *constants)
+softsh_result softshi_classify_create(softsh_view *view, const softshi_specialization *constants)
 {
-    softsh_result result = SOFTSH_SUCCESS;
-    if (kind == 0)
-        result = softshi_pipeline_create(view->context, SOFTSHI_SHADER_CLASSIFY_COLUMNS, constants,
-                                         &view->pipelines.classify_columns);
+    softsh_result result = softshi_pipeline_create(view->context, SOFTSHI_SHADER_CLASSIFY_COLUMNS, constants,
+                                                   &view->pipelines.classify_columns);
     if (result == SOFTSH_SUCCESS)
         result = softshi_pipeline_create(view->context, SOFTSHI_SHADER_CLASSIFY_TILES, constants,
-                                         &view->pipelines.classify_tiles[kind]);
+                                         &view->pipelines.classify_tiles);
     if (result == SOFTSH_SUCCESS)
-        result = softshi_pipeline_create(view->context, SOFTSHI_SHADER_CLASSIFY_PIXELS, constants,
-                                         &view->pipelines.classify_pixels[kind]);
+        result = softshi_pipeline_create(view->context,
+                                         softshi_settings_in_packets(&view->settings) ? SOFTSHI_SHADER_CLASSIFY_BLOCKS
+                                                                                      : SOFTSHI_SHADER_CLASSIFY_PIXELS,
+                                         constants, &view->pipelines.classify_pixels);
     return result;
 }
 
 void softshi_classify_record(const softshi_visibility *visibility)
 {
     const softsh_view *view = visibility->view;
-    const int kind = visibility->kind;
     const softshi_pass columns = {
         .pipeline = &view->pipelines.classify_columns,
         .reads = SOFTSHI_HEADER | SOFTSHI_FRAME,
@@ -29,14 +30,14 @@ void softshi_classify_record(const softshi_visibility *visibility)
     };
     softshi_record_pass(visibility->recorder, &columns);
     const softshi_pass tiles = {
-        .pipeline = &view->pipelines.classify_tiles[kind],
+        .pipeline = &view->pipelines.classify_tiles,
         .reads = SOFTSHI_HIERARCHY | SOFTSHI_FRAME,
         .writes = SOFTSHI_CONTROL | SOFTSHI_TILES | SOFTSHI_VISIBILITY,
         .groups = {(visibility->frame.tiles.x + 7) / 8, (visibility->frame.tiles.y + 7) / 8, 1},
     };
     softshi_record_pass(visibility->recorder, &tiles);
     const softshi_pass pixels = {
-        .pipeline = &view->pipelines.classify_pixels[kind],
+        .pipeline = &view->pipelines.classify_pixels,
         .reads = SOFTSHI_HIERARCHY | SOFTSHI_FRAME,
         .writes = SOFTSHI_CONTROL | SOFTSHI_TILES | SOFTSHI_FILTER | SOFTSHI_VISIBILITY,
         .indirect = view->block.buffer,

@@ -18,9 +18,10 @@ softsh_result softshi_hierarchy_create(softsh_occluders *o)
         uint32_t from_fan_depth;
         softshi_pipeline *pipeline;
     } list[] = {
-        {SOFTSHI_SHADER_HIERARCHY_CONVERT, 0, &p->convert},   {SOFTSHI_SHADER_HIERARCHY_SAMPLE, 0, &p->sample},
-        {SOFTSHI_SHADER_HIERARCHY_REDUCE, 0, &p->reduce},     {SOFTSHI_SHADER_HIERARCHY_PLAN, 0, &p->plan},
-        {SOFTSHI_SHADER_HIERARCHY_WIDEN, 1, &p->widen_first}, {SOFTSHI_SHADER_HIERARCHY_WIDEN, 0, &p->widen},
+        {SOFTSHI_SHADER_HIERARCHY_CONVERT, 0, &p->convert}, {SOFTSHI_SHADER_HIERARCHY_SAMPLE, 0, &p->sample},
+        {SOFTSHI_SHADER_HIERARCHY_REDUCE, 0, &p->reduce},   {SOFTSHI_SHADER_HIERARCHY_MERGE, 0, &p->merge},
+        {SOFTSHI_SHADER_HIERARCHY_PLAN, 0, &p->plan},       {SOFTSHI_SHADER_HIERARCHY_WIDEN, 1, &p->widen_first},
+        {SOFTSHI_SHADER_HIERARCHY_WIDEN, 0, &p->widen},
     };
     for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
         constants.values[SS_SPEC_COUNT] = list[i].from_fan_depth;
@@ -34,7 +35,8 @@ softsh_result softshi_hierarchy_create(softsh_occluders *o)
 void softshi_hierarchy_destroy(softsh_occluders *o)
 {
     softshi_hierarchy_pipelines *p = &o->pipelines;
-    softshi_pipeline *const all[] = {&p->convert, &p->sample, &p->reduce, &p->plan, &p->widen_first, &p->widen};
+    softshi_pipeline *const all[] = {&p->convert, &p->sample,      &p->reduce, &p->merge,
+                                     &p->plan,    &p->widen_first, &p->widen};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         softshi_pipeline_destroy(o->context, all[i]);
 }
@@ -84,10 +86,22 @@ void softshi_hierarchy_record_levels(softshi_recorder *recorder, const softsh_oc
         };
         softshi_record_pass(recorder, &pass);
     }
+    if (layers > 1) {
+        const uint32_t groups = divide_up((uint32_t)layout->pyramid_texels, SS_SAMPLE_GROUP);
+        const softshi_pass merge = {
+            .pipeline = &o->pipelines.merge,
+            .reads = SOFTSHI_HEADER,
+            .writes = SOFTSHI_PYRAMID,
+            .groups = {groups < SS_DISPATCH_WIDTH ? groups : SS_DISPATCH_WIDTH, divide_up(groups, SS_DISPATCH_WIDTH),
+                       1},
+        };
+        softshi_record_pass(recorder, &merge);
+    }
     const softshi_pass plan = {
         .pipeline = &o->pipelines.plan,
-        .reads = SOFTSHI_HEADER | SOFTSHI_PYRAMID,
-        .writes = SOFTSHI_PLAN,
+        .reads = SOFTSHI_PYRAMID,
+        /* Both are one uniform to the other passes. */
+        .writes = SOFTSHI_PLAN | SOFTSHI_HEADER,
         .groups = {1, 1, 1},
     };
     softshi_record_pass(recorder, &plan);

@@ -24,6 +24,35 @@ softsh_settings softshi_settings_resolve(const softsh_settings *settings)
     return s;
 }
 
+bool softshi_settings_in_packets(const softsh_settings *s)
+{
+    return s->technique == SOFTSH_TECHNIQUE_CONTOUR;
+}
+
+softshi_packets softshi_settings_packets(const softsh_settings *s)
+{
+    softshi_packets p = {.side = {[SS_LIST_PIXELS] = 1}, .block = 4};
+    if (!softshi_settings_in_packets(s) || s->packet == SOFTSH_PACKET_1X1)
+        return p;
+    if (s->sparse) {
+        /* Every second pixel of every second row of a block, and then what is left of it. */
+        p.side[SS_LIST_SMALL] = 2;
+        p.side[SS_LIST_LARGE] = 4;
+        p.split = s->packet == SOFTSH_PACKET_2X2;
+        return p;
+    }
+    if (s->packet == SOFTSH_PACKET_2X2) {
+        p.side[SS_LIST_SMALL] = 2;
+    } else if (s->packet == SOFTSH_PACKET_3X3) {
+        p.side[SS_LIST_LARGE] = p.block = 3;
+    } else {
+        p.side[SS_LIST_LARGE] = 4;
+        p.split = s->packet == SOFTSH_PACKET_DEFAULT;
+        p.side[SS_LIST_SMALL] = p.split ? 2 : 0;
+    }
+    return p;
+}
+
 softshi_specialization softshi_settings_specialize(const softsh_settings *s, bool normals, bool stats)
 {
     static const uint32_t sides[] = {[SOFTSH_PATTERN_8X8] = 8,
@@ -47,7 +76,13 @@ softshi_specialization softshi_settings_specialize(const softsh_settings *s, boo
     c.values[SS_SPEC_STATS] = stats;
     c.values[SS_SPEC_FILTER] = s->filter_passes > 0;
     c.values[SS_SPEC_NORMALS] = normals;
+    c.values[SS_SPEC_LAYERED] = 1;
     c.values[SS_SPEC_SPARSE] = s->sparse != 0;
+    const softshi_packets packets = softshi_settings_packets(s);
+    c.values[SS_SPEC_PACKET] = packets.side[SS_LIST_LARGE]   ? packets.side[SS_LIST_LARGE]
+                               : packets.side[SS_LIST_SMALL] ? packets.side[SS_LIST_SMALL]
+                                                             : 1;
+    c.values[SS_SPEC_BLOCK] = packets.block;
     return c;
 }
 

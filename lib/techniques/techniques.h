@@ -5,15 +5,14 @@
 
 #include "view.h"
 
-softsh_result softshi_classify_create(softsh_view *view, int kind, const softshi_specialization *constants);
+softsh_result softshi_classify_create(softsh_view *view, const softshi_specialization *constants);
 void softshi_classify_record(const softshi_visibility *visibility);
 
-softsh_result softshi_bitmask_create(softsh_view *view, int kind, const softshi_specialization *constants);
+softsh_result softshi_bitmask_create(softsh_view *view, const softshi_specialization *constants);
 
-softsh_result softshi_contour_create(softsh_view *view, int kind, const softshi_specialization *constants);
+softsh_result softshi_contour_create(softsh_view *view, const softshi_specialization *constants);
 
-/* The pixels of the active list, by whichever technique the view was created with. Round 1: those that interpolation
- * left. */
+/* What is on the lists, by whichever technique the view was created with. Round 1: what interpolation left. */
 void softshi_evaluate_record(const softshi_visibility *visibility, uint32_t round);
 
 softsh_result softshi_interpolate_create(softsh_view *view, const softshi_specialization *constants);

@@ -1,5 +1,6 @@
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_GOOGLE_include_directive : require
 // The pixels of undecided tiles, one group per tile: lit and umbra pixels are written, the others go on the active list, in
 // any order: no result depends on it.
@@ -35,9 +36,12 @@ void main()
     const uint state = !r.valid ? SS_STATE_LIT : r.away ? SS_STATE_UMBRA : k.state;
     const uint id = tile * SS_TILE_PIXELS + lane;
     if (state == SS_STATE_PIXELS && is_on_lattice(pixel))
-        ss_append_active(0u, id, k.g_hi);
-    if (SS_SPARSE && state == SS_STATE_PIXELS && !is_on_lattice(pixel))
-        ss_append_interpolated(id, k.g_hi);
+        ss_append_pixel(0u, id, k.g_hi);
+    if (SS_SPARSE && state == SS_STATE_PIXELS && !is_on_lattice(pixel)) {
+        const uint slot = ss_add_interpolated(2u);
+        tiles[slot] = id;
+        tiles[slot + 1u] = floatBitsToUint(k.g_hi);
+    }
     if (SS_SPARSE && state != SS_STATE_PIXELS)
         ss_store_visible(pixel, state == SS_STATE_UMBRA ? SS_ALL_DARK : SS_ALL_LIT);
     if (state == SS_STATE_UMBRA)

@@ -1,5 +1,6 @@
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_GOOGLE_include_directive : require
 // One lane per tile of 8 x 8 pixels: bounds the tile's receivers by a plane and a thickness, and asks the hierarchy whether all
 // of them are lit or all in umbra. Lit tiles are done already, umbra tiles are written here; neither is seen again. The others
@@ -11,11 +12,9 @@
 #include "ss_receiver.glsl"
 #include "ss_range.glsl"
 #include "ss_kernel.glsl"
+#include "ss_bounds.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-
-// Above a box of so many texels a side a tile is not looked at cell by cell.
-const int MAX_PLANE_SIDE = 32;
 
 // Receivers of a tile in device depth: first + step x + step y + residual.
 struct tile_depth
@@ -23,20 +22,6 @@ struct tile_depth
     float first;
     vec2 step;
     vec2 residual; // least, most; least > most: no receivers
-};
-
-// The receivers of a tile, in map space.
-struct tile_bounds
-{
-    bool usable;
-    vec2 lo, hi;     // box of (u, v)
-    float g_lo, g_hi;
-    vec3 plane;      // g >= plane.x u + plane.y v + plane.z for every receiver
-    float thickness; // how far receivers rise above that plane
-    float eta;
-    float side;      // of the plane that their fronts are on
-    vec2 gradient;   // of the plane, however steep
-    bool exact;      // nothing leaves the plane but for the precision of depths
 };
 
 vec4 load_column(uint tile, uint column)
@@ -69,9 +54,9 @@ tile_depth combine_columns(uint tile)
 }
 
 // Convex hull of the pixels' plane, thickened by the residuals: a projective map keeps it convex.
-tile_bounds bound(ivec2 corner, tile_depth d)
+ss_bounds bound(ivec2 corner, tile_depth d)
 {
-    tile_bounds t;
+    ss_bounds t;
     t.usable = true;
     t.lo = vec2(3e38);
     t.hi = vec2(-3e38);
@@ -123,86 +108,6 @@ tile_bounds bound(ivec2 corner, tile_depth d)
     return t;
 }
 
-// Whether the receivers leave their plane by no more than it rises over two texels.
-bool is_planar(tile_bounds t)
-{
-    const float slope = abs(t.plane.x) + abs(t.plane.y) + ss_slack(t.g_hi);
-    return t.thickness <= 2.0 * slope + 4.0 * t.eta;
-}
-
-// Whether all of the light lies in front of the plane through any of the receivers; and whether none does.
-void find_horizon(tile_bounds t, out bool all_before, out bool all_behind)
-{
-    const vec2 middle = 0.5 * (t.lo + t.hi), half_side = 0.5 * (t.hi - t.lo);
-    const ss_horizon_line line = ss_horizon_of(middle, 0.5 * (t.g_lo + t.g_hi), t.gradient);
-    const float widest = abs(line.n.x) + abs(line.n.y);
-    const float room = abs(occ.light.z) * (0.5 * (t.g_hi - t.g_lo) + dot(abs(t.gradient), half_side));
-    const bool before = line.c - room >= widest, behind = line.c + room <= -widest;
-    all_before = t.side > 0.0 ? before : behind;
-    all_behind = t.exact && (t.side > 0.0 ? behind : before);
-}
-
-// Whether no texel of the box rises above the receivers' plane by more than the plane itself does within a cell of 4 x 4
-// texels, a footprint the pixels' own test allows as well. Only for tiles that are one plane, and boxes of a few cells.
-bool lies_under_plane(tile_bounds t, uint layer, ivec2 lo, ivec2 hi)
-{
-    const int side = max(hi.x - lo.x, hi.y - lo.y) + 1;
-    const float slope = abs(t.plane.x) + abs(t.plane.y) + ss_slack(t.g_hi);
-    const bool planar = is_planar(t);
-    const int level = min(2, int(occ.levels.x));
-    const ivec2 a = lo >> level, b = side <= MAX_PLANE_SIDE && planar ? hi >> level : a - 1;
-    const float cell = float(1 << level), footprint = 0.5 * cell * slope + t.eta;
-    const int row = int(occ.pyramid[level].y);
-    const uint base = layer * occ.strides.y + ss_level_offset(uint(level));
-    bool under = side <= MAX_PLANE_SIDE && planar;
-    for (int y = a.y; y <= b.y && under; y++) {
-        for (int x = a.x; x <= b.x; x++) {
-            const float g = ss_range_at(base + uint(y * row + x)).y;
-            under = under && g <= dot(t.plane.xy, (vec2(x, y) + 0.5) * cell) + t.plane.z + footprint;
-        }
-    }
-    return under;
-}
-
-// The tile's state; g_hi comes back as the nearest occluder its receivers can have.
-uint classify(tile_bounds t, inout float g_hi, inout uint nodes)
-{
-    const vec2 limit = vec2(occ.size.xy);
-    const float den = occ.light.w - occ.light.z * t.g_hi;
-    if (!t.usable || !(den > 0.0) || !SS_HIERARCHY)
-        return SS_STATE_PIXELS;
-    if (any(lessThan(t.hi, vec2(0.0))) || any(greaterThan(t.lo, limit)))
-        return SS_STATE_LIT;
-    const bool biased = (ss_flags & SS_FLAG_OVERRIDE_BIAS) != 0u;
-    bool all_before, all_behind;
-    find_horizon(t, all_before, all_behind);
-    uint state = SS_STATE_PIXELS;
-    for (int i = 0; i < SS_TILE_REFINEMENTS && state == SS_STATE_PIXELS; i++) {
-        const ss_samples s = ss_kernel_samples(ss_kernel_box(t.lo, t.hi, t.g_lo, den, g_hi));
-        vec2 range = vec2(-3e38);
-        for (uint layer = 0u; layer < ss_layers(); layer++)
-            range = max(range, ss_range_pyramid(layer, s.texel_lo, s.texel_hi));
-        nodes += 4u * ss_layers();
-        const float rise = dot(abs(t.plane.xy), vec2(s.texel_hi - s.texel_lo + 1)) + t.eta;
-        const bool inside = all(greaterThanEqual(t.lo, vec2(0.0))) && all(lessThanEqual(t.hi, limit));
-        const bool dark = ss_rim_occludes(
-            s, t.side > 0.0 && s.covered && inside && range.x > t.g_hi + rise && occ.light.z * range.y < occ.light.w && !biased,
-            t.g_hi + rise + (abs(t.plane.x) + abs(t.plane.y)) * float(1u << s.level));
-        if (!(range.y > t.g_lo + (biased ? 0.0 : t.eta)))
-            state = SS_STATE_LIT;
-        else if (dark || (all_behind && !biased))
-            state = SS_STATE_UMBRA;
-        g_hi = min(g_hi, range.y);
-    }
-    if (state != SS_STATE_PIXELS || biased)
-        return state;
-    const ss_samples s = ss_kernel_samples(ss_kernel_box(t.lo, t.hi, t.g_lo, den, g_hi));
-    bool under = t.side > 0.0 && all_before;
-    for (uint layer = 0u; layer < ss_layers(); layer++)
-        under = under && lies_under_plane(t, layer, s.texel_lo, s.texel_hi);
-    return under ? SS_STATE_LIT : SS_STATE_PIXELS;
-}
-
 void write_umbra(ivec2 corner, ivec2 last)
 {
     for (int y = 0; y <= last.y; y++)
@@ -223,7 +128,7 @@ void main()
     const bool empty = d.residual.x > d.residual.y;
     uint nodes = 0u;
     float g_hi = ss_nearest();
-    uint state = classify(bound(corner, d), g_hi, nodes);
+    uint state = ss_classify_bounds(bound(corner, d), SS_TILE_REFINEMENTS, g_hi, nodes);
     // Normals can make single pixels face away, which only classify_pixels looks at.
     if (SS_NORMALS && state == SS_STATE_LIT)
         state = SS_STATE_PIXELS;
@@ -232,8 +137,10 @@ void main()
     tiles[tile] = state;
     if (state == SS_STATE_PIXELS) {
         const uint i = atomicAdd(control.pixels_args.w, 1u);
-        atomicMax(control.pixels_args.x, min(i + 1u, SS_DISPATCH_WIDTH));
-        atomicMax(control.pixels_args.y, i / SS_DISPATCH_WIDTH + 1u);
+        // A group of the next pass has the pixels of one tile, or the blocks of several.
+        const uint group = SS_IS_CONTOUR ? ((i + 1u) * SS_TILE_BLOCKS - 1u) / SS_EVALUATE_GROUP : i;
+        atomicMax(control.pixels_args.x, min(group + 1u, SS_DISPATCH_WIDTH));
+        atomicMax(control.pixels_args.y, group / SS_DISPATCH_WIDTH + 1u);
         tiles[ss_undecided_slot(i)] = tile;
         tiles[ss_undecided_slot(i) + 1u] = floatBitsToUint(g_hi);
     }

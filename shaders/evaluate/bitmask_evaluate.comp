@@ -1,5 +1,6 @@
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_GOOGLE_include_directive : require
 // Bitmask Soft Shadows (Schwarz and Stamminger 2007) and area accumulation, for the active pixels: every
 // micro-occluder of the kernel is back-projected onto the light. One lane per pixel of the active list.
@@ -98,10 +99,10 @@ void add_patches(ss_grid grid, ss_samples s, ss_back_projection b, ss_receiver r
 void main()
 {
     const uint index = (gl_WorkGroupID.y * SS_DISPATCH_WIDTH + gl_WorkGroupID.x) * SS_EVALUATE_GROUP + gl_LocalInvocationIndex;
-    if (index >= control.evaluate_args[push.round].w)
+    if (index >= control.evaluate_args[SS_LISTS * push.round + SS_LIST_PIXELS].w)
         return;
-    const uint id = tiles[ss_active_slot(index)];
-    const float g_hi = uintBitsToFloat(tiles[ss_active_slot(index) + 1u]);
+    const uint id = tiles[ss_pixel_slot(index)];
+    const float g_hi = uintBitsToFloat(tiles[ss_pixel_slot(index) + 1u]);
     const ivec2 pixel = ss_tile_pixel(id / SS_TILE_PIXELS, id % SS_TILE_PIXELS);
 
     const ss_receiver r = ss_load_receiver(pixel);

@@ -1,19 +1,26 @@
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_GOOGLE_include_directive : require
-// Contours of what occludes a receiver, by marching squares over the kernel's samples, back-projected and integrated on the
-// light (Guennebaud et al. 2007; Yang et al. 2009, section 4): docs/numerics.md, section 10. One lane per pixel of the active
-// list. First which samples occlude, 32 to a word; words tell by bit operations which cells have a contour, so that only
-// those are looked at again: their number grows with the length of the shadow's edge.
+// Contours of what occludes receivers, by marching squares over the kernel's samples, back-projected and integrated on the
+// light (Guennebaud et al. 2007; Yang et al. 2009, section 4): docs/numerics.md, section 10. One lane per packet: which samples
+// occlude and where the contours run is found once for all of its pixels; edges are projected for each of them. Pixels that
+// do not belong together go on to a list of smaller packets or single pixels, which is evaluated next, and so does a packet that
+// is not of one contour.
 #include "ss_types.h"
 #include "ss_specialization.glsl"
 #include "ss_occluder_bindings.glsl"
 #include "ss_io_bindings.glsl"
 #include "ss_filter_values.glsl"
+#include "ss_lists.glsl"
 #include "ss_receiver.glsl"
 #include "ss_range.glsl"
 #include "ss_kernel.glsl"
 #include "ss_sample.glsl"
+#include "ss_edge.glsl"
+#include "ss_packet.glsl"
+#include "ss_strip.glsl"
+#include "ss_contour.glsl"
 
 layout(local_size_x = SS_EVALUATE_GROUP) in;
 layout(push_constant) uniform ss_push
@@ -21,168 +28,283 @@ layout(push_constant) uniform ss_push
     ss_evaluate_push push;
 };
 
-const int SS_WORD_CELLS = 31; // a cell has samples of two neighbouring bits
+// Samples that a packet may compare with its receivers one by one: what asks for more is hardly of one contour, and drivers end
+// shaders that run too long.
+const uint MOST_RESOLVED = 512u;
 
-// Samples x0 to x0 + 31 of a few rows, as far as blocks of them tell.
-struct row_blocks
-{
-    uint full;  // these occlude
-    uint mixed; // these must be looked at; the rest do not occlude
-};
+const int N = SS_PACKET * SS_PACKET;
+const bool ALONE = N == 1;
+const uint LIST = ALONE ? SS_LIST_PIXELS : SS_PACKET == 2 ? SS_LIST_SMALL : SS_LIST_LARGE;
 
-// What the depth range of a block of 2^log2_side x 2^log2_side samples says about them: docs/numerics.md, section 10.
-void add_block(uint layer, ivec2 block, int log2_side, int x0, ss_samples s, ss_back_projection b, ss_receiver r, float band,
-               inout row_blocks rows)
+ss_packet packet;
+uint together;      // its receivers
+ss_samples samples; // that any of them asks for
+ss_light_map light_map;
+uint resolved; // samples compared one by one
+bool diverged;
+
+// Of each receiver. Arrays of scalars, few of them: drivers may have to keep all of it in memory.
+float at_u[N], at_v[N], at_g[N]; // g: biased
+float border[N], gradient_x[N], gradient_y[N], drift[N]; // of what counts as its own surface; border: at uv
+float horizon[N];
+float area[N], occlusion[N];
+uint touched; // those whose light edges of the contours come near enough to hide parts of
+
+ivec2 offset_of(int i)
 {
-    const int shift = log2_side + int(s.level), level = min(shift, int(occ.levels.x));
-    const vec2 range = ss_load_pyramid(layer, uint(level), (block << shift) >> level);
-    const float half_side = 0.5 * float((1 << shift) - 1);
-    const vec2 away = vec2(block << shift) + (0.5 + half_side) - r.uv;
-    const float plane = b.g - r.eta + dot(r.gradient, away), rise = (abs(r.gradient.x) + abs(r.gradient.y)) * half_side;
-    const float noise = r.drift * (abs(away.x) + abs(away.y) + 2.0 * half_side);
-    // A quarter of eta is more than these sums are rounded by.
-    const bool under = r.side > 0.0 ? range.y <= plane - rise + band - 0.25 * r.eta : range.x >= plane + rise - band + 0.25 * r.eta;
-    const bool none = level == shift && (!(range.y > b.g) || under);
-    const bool over = r.side > 0.0 ? range.x > plane + rise + band + noise + 0.25 * r.eta
-                                   : range.y < plane - rise - band - noise - 0.25 * r.eta;
-    const bool every = level == shift && range.x > b.g && occ.light.w - occ.light.z * range.y > 0.0 && over;
-    const int first = (block.x << log2_side) - x0;
-    const uint side = (1u << (1 << log2_side)) - 1u, bits = first < 0 ? side >> -first : side << first;
-    rows.full |= every ? bits : 0u;
-    rows.mixed |= none || every ? 0u : bits;
+    return ivec2(i % SS_PACKET, i / SS_PACKET) * int(push.stride);
 }
 
-// Which of the samples x0 to x0 + 31 of a row occlude; `inside` are those of the kernel, the others do not.
-uint occluding(ss_grid grid, int x0, int y, uint inside, row_blocks rows, ss_samples s, ss_back_projection b, ss_receiver r,
-               float band)
+// A packet's mask has a bit for each of 4 x 4 pixels; from one that is in the packet to its number.
+int receiver_of(int bit)
 {
-    uint bits = rows.full & inside;
-    for (uint todo = rows.mixed & inside; todo != 0u; todo &= todo - 1u) {
+    const int shift = int(push.stride) >> 1;
+    return ((bit & 3) >> shift) + SS_PACKET * (bit >> 2 >> shift);
+}
+
+// Whether a sample occludes one receiver, computed as for a packet of one.
+bool occludes_one(int i, vec2 place, float g)
+{
+    const vec2 away = place - vec2(at_u[i], at_v[i]), far = abs(away);
+    const float height = packet.side * (g - gradient_y[i] * away.y - gradient_x[i] * away.x);
+    return g > at_g[i] && g < packet.g_limit && height > border[i] + drift[i] * far.y + drift[i] * far.x;
+}
+
+vec2 back_project(int i, vec3 at)
+{
+    return ss_map_to_light(light_map, vec3(at_u[i], at_v[i], at_g[i]), at);
+}
+
+// Samples of the strip that bounds do not tell about, one by one: they occlude all receivers, or none, or the packet diverges.
+void resolve_strip(ss_grid grid, int x0, int y0, uint unknown_rows)
+{
+    int row = 0;
+    uint todo = 0u;
+    while ((todo != 0u || unknown_rows != 0u) && !diverged) {
+        if (todo == 0u) {
+            row = findLSB(unknown_rows);
+            todo = ss_strip_unknown[row];
+            unknown_rows &= unknown_rows - 1u;
+        }
         const int k = findLSB(todo);
-        const ivec2 at = ivec2(x0 + k, y);
+        todo &= todo - 1u;
+        const ivec2 at = ivec2(x0 + k, y0 + row);
         const float g = ss_sample_depth(grid, at);
-        bits |= uint(ss_occludes(g, ss_sample_place(at, s.level), b, r, band)) << k;
+        const vec2 place = ss_sample_place(at, grid.level);
+        uint by = 0u;
+        for (uint left = together; left != 0u; left &= left - 1u) {
+            const int i = findLSB(left);
+            by |= uint(occludes_one(i, place, g)) << i;
+        }
+        resolved++;
+        diverged = (by != 0u && by != together) || resolved > MOST_RESOLVED;
+        ss_strip[row] |= by == together ? 1u << k : 0u;
     }
-    return bits;
 }
 
-// From corner `corner` of a cell to the next, counter-clockwise from the lower left: half a step.
-vec2 towards_next(int corner)
+// Edges of the strip's contours to the receivers' areas.
+void add_contours(ss_grid grid, int x0, int y0, uint rows, uint columns, inout uint edges)
 {
-    const float step = (corner & 2) == 0 ? 0.5 : -0.5;
-    return (corner & 1) == 0 ? vec2(step, 0.0) : vec2(0.0, step);
-}
-
-// The point of a contour half the way from an occluding corner of a cell to a neighbour, at the occluder's depth.
-vec2 contour_point(ss_grid grid, ivec2 cell, int corner, vec2 half_step, ss_back_projection b)
-{
-    const ivec2 at = cell + ivec2((corner + 1) >> 1 & 1, corner >> 1);
-    const float g = ss_sample_depth(grid, at);
-    return ss_back_project(b, ss_sample_place(at, grid.level) + half_step * float(1u << grid.level), g);
-}
-
-// Mean of clamp(x, 0, 1) for x from x0 to x1 in even steps.
-float mean_clamped(float x0, float x1)
-{
-    const float low = min(x0, x1), high = max(x0, x1), inside_low = clamp(low, 0.0, 1.0), inside_high = clamp(high, 0.0, 1.0);
-    // Beyond the left side nothing, then a trapezoid, then the whole width.
-    const float sum = 0.5 * (inside_high - inside_low) * (inside_low + inside_high) + (high - inside_high);
-    return inside_high > inside_low ? sum / (high - low) : inside_low;
-}
-
-// The integral of x dy along an edge, in the light's square [0, 1] x [0, 1].
-float edge_area(vec2 from, vec2 to)
-{
-    const float y0 = clamp(from.y, 0.0, 1.0), y1 = clamp(to.y, 0.0, 1.0);
-    const float slope = (to.x - from.x) / (to.y - from.y);
-    const float area = (y1 - y0) * mean_clamped(from.x + (y0 - from.y) * slope, from.x + (y1 - from.y) * slope);
-    return abs(y1 - y0) > 0.0 ? area : 0.0;
-}
-
-// Area of what a layer hides, signed by the orientation of the light's axes.
-float layer_area(uint layer, ss_samples s, ss_back_projection b, ss_receiver r, float band, inout uint edges)
-{
-    const ss_grid grid = ss_load_grid(layer, s.level);
-    float area = 0.0;
-    // Blocks pay in kernels of several; measured: not below 24 samples a side, and larger ones from 48.
-    const int side = max(s.hi.x - s.lo.x, s.hi.y - s.lo.y) + 1, log2_side = side > 48 ? 3 : 2;
-    const bool in_blocks = SS_HIERARCHY && side > 24;
-    for (int x0 = s.lo.x - 1; x0 <= s.hi.x; x0 += SS_WORD_CELLS) {
-        // Bits of the samples of the kernel: first to last of 32.
-        const int first = max(s.lo.x - x0, 0), last = min(s.hi.x - x0, SS_WORD_CELLS);
-        const uint columns = (0xffffffffu >> (SS_WORD_CELLS - last)) & (0xffffffffu << first);
-        row_blocks rows;
-        uint below = 0u;
-        for (int y = s.lo.y; y <= s.hi.y + 1; y++) {
-            // New blocks, by a loop that most rows skip.
-            const bool entered = y == s.lo.y || (y & ((1 << log2_side) - 1)) == 0;
-            const int first_block = max(x0 + first, 0) >> log2_side, end_block = entered && in_blocks ? (x0 + last >> log2_side) + 1 : first_block;
-            rows.full = entered ? 0u : rows.full;
-            rows.mixed = entered ? (in_blocks ? 0u : 0xffffffffu) : rows.mixed;
-            for (int x = first_block; x < end_block; x++)
-                add_block(layer, ivec2(x, y >> log2_side), log2_side, x0, s, b, r, band, rows);
-            const uint above = occluding(grid, x0, y, y <= s.hi.y ? columns : 0u, rows, s, b, r, band);
-            // Corners a, b, c, d of all cells of the row, counter-clockwise from the lower left.
-            const uint ca = below, cb = below >> 1, cc = above >> 1, cd = above;
-            const uint any = (ca | cb | cc | cd) & 0x7fffffffu, all = ca & cb & cc & cd;
-            // Occluders that touch at a corner stay apart: two runs of corners, one after the other.
-            const uint twice = ((ca & cc & ~(cb | cd)) | (cb & cd & ~(ca | cc))) & 0x7fffffffu;
-            uint todo = any & ~all;
-            bool second = false;
-            edges += uint(bitCount(todo) + bitCount(twice));
-            while (todo != 0u || (!second && twice != 0u)) {
-                if (todo == 0u) {
-                    todo = twice;
-                    second = true;
-                }
-                const int k = findLSB(todo);
-                todo &= todo - 1u;
-                uint corners = (ca >> k & 1u) | (cb >> k & 1u) << 1 | (cc >> k & 1u) << 2 | (cd >> k & 1u) << 3;
-                const bool ambiguous = (twice >> k & 1u) != 0u;
-                corners &= ambiguous ? (second ? 12u : 3u) : 15u;
-                // Bit i of `following` is corner i + 1.
-                const uint following = (corners >> 1) | (corners & 1u) << 3;
-                const int leaves = findLSB(corners & ~following), enters = findLSB(~corners & following);
-                const ivec2 cell = ivec2(x0 + k, y - 1);
-                const vec2 from = contour_point(grid, cell, leaves, towards_next(leaves), b);
-                const vec2 to = contour_point(grid, cell, (enters + 1) & 3, -towards_next(enters), b);
-                area += edge_area(from, to);
-            }
-            below = above;
+    ss_contour_cells cells;
+    cells.todo = 0u;
+    while (rows != 0u || cells.todo != 0u) {
+        if (cells.todo == 0u) {
+            cells = ss_begin_cells(findLSB(rows), columns);
+            rows &= rows - 1u;
+        }
+        const bool any = cells.todo != 0u;
+        uint corners;
+        const int k = ss_next_cell(cells, corners);
+        vec3 from, to;
+        ss_contour_edge(grid, ivec2(x0 + k, y0 + cells.row), corners, from, to);
+        edges += uint(any);
+        [[unroll]] for (int i = 0; i < N; i++) {
+            const vec2 p = back_project(i, from), q = back_project(i, to);
+            const float a = ss_edge_area(p, q);
+            area[i] += any ? a : 0.0;
+            if (SS_SPARSE)
+                touched |= uint(any && ss_edge_touches(p, q)) << i;
         }
     }
-    return area;
+}
+
+// One strip of one layer's samples after the other.
+void add_layers(inout uint edges)
+{
+    const int first = samples.lo.x - 1, start = first & ~3;
+    const bool in_blocks = SS_HIERARCHY && samples.level + 2u <= occ.levels.x;
+    ss_grid grid = ss_load_grid(0u, samples.level);
+    // Blocks of 4 x 4 samples are the texels two levels up.
+    ss_grid blocks = ss_load_grid(0u, min(samples.level + 2u, occ.levels.x));
+    const float orientation = determinant(light_map.matrix) < 0.0 ? -1.0 : 1.0;
+    uint layer = 0u;
+    int x0 = start, y0 = samples.lo.y - 1, skip = first - start;
+    while (layer < ss_layers() && together != 0u && !diverged) {
+        const int count = min(samples.hi.y + 1 - y0, SS_STRIP_ROWS);
+        const uint unknown_rows = ss_fill_strip(packet, ALONE, grid, blocks, in_blocks, samples.lo, samples.hi, x0, y0, count);
+        if (!ALONE)
+            resolve_strip(grid, x0, y0, unknown_rows);
+        add_contours(grid, x0, y0, diverged ? 0u : ss_contour_rows(count), 0x7fffffffu & (0xffffffffu << skip), edges);
+        y0 += SS_STRIP_ROWS;
+        if (y0 > samples.hi.y) {
+            y0 = samples.lo.y - 1;
+            x0 += SS_STRIP_STEP;
+            skip = SS_STRIP_COLUMNS - SS_STRIP_STEP;
+        }
+        if (x0 + skip > samples.hi.x) {
+            x0 = start;
+            skip = first - start;
+            layer++;
+            grid.depths += 4u * occ.strides.x;
+            grid.ranges += occ.strides.y;
+            blocks.ranges += occ.strides.y;
+            [[unroll]] for (int i = 0; i < N; i++) {
+                const float signed_area = orientation * area[i];
+                const float a = signed_area > 0.0 ? min(signed_area, 1.0) : 0.0; // not a number is nothing
+                occlusion[i] = SS_MERGE_MAXIMUM ? max(occlusion[i], a) : min(occlusion[i] + a, 1.0);
+                area[i] = 0.0;
+            }
+        }
+    }
+}
+
+// Yang et al. 2009, equation 6: what `receivers` cost that share the contours of a kernel.
+float cost_of(ivec2 lo, ivec2 hi, uint receivers)
+{
+    const float w = float(max(hi.x - lo.x, hi.y - lo.y) + 2);
+    return w * (frame.cost.x * log2(w) + frame.cost.y + frame.cost.z * float(receivers));
+}
+
+// Loads the pixels of `mask` that are neither lit nor dark by what their kernels hold; those of one level and side make the packet.
+// Returns the others.
+uint load_packet(ivec2 corner, uint mask, float g_hi)
+{
+    vec2 gradient_lo = vec2(3e38), gradient_hi = vec2(-3e38), uv = vec2(0.0);
+    float side = 1.0, alone = 0.0, eta = 3e38;
+    uint apart = 0u, lit_count = 0u, dark_count = 0u;
+    together = 0u;
+    samples.level = 0u;
+    samples.lo = ivec2(0);
+    samples.hi = ivec2(-2);
+    samples.clamped = false;
+    // Loops over receivers go through bits: with a fixed number of rounds drivers would unroll them.
+    for (uint todo = mask; todo != 0u; todo &= todo - 1u) {
+        const int i = receiver_of(findLSB(todo));
+        const ivec2 pixel = corner + offset_of(i);
+        const ss_receiver r = ss_load_receiver(pixel);
+        bool empty;
+        const float nearest = ss_refine_kernel(r, g_hi, empty);
+        const ss_samples own = ss_receiver_samples(r, nearest);
+        float band;
+        at_u[i] = r.uv.x;
+        at_v[i] = r.uv.y;
+        at_g[i] = ss_biased(r, own.level, band);
+        horizon[i] = r.horizon;
+        const bool lit = !r.valid || (empty && !r.away), dark = !lit && (r.away || r.horizon >= 1.0);
+        if (dark)
+            ss_write_visibility(pixel, 0.0);
+        if (SS_SPARSE && (lit || dark))
+            ss_store_visible(pixel, lit ? SS_ALL_LIT : SS_ALL_DARK);
+        lit_count += uint(lit);
+        dark_count += uint(dark);
+        if (!lit && !dark) {
+            const bool first = together == 0u;
+            samples.level = first ? own.level : samples.level;
+            side = first ? r.side : side;
+            if (own.level == samples.level && r.side == side) {
+                samples.lo = first ? own.lo : min(samples.lo, own.lo);
+                samples.hi = first ? own.hi : max(samples.hi, own.hi);
+                samples.clamped = own.clamped;
+                uv = first ? r.uv : uv;
+                gradient_lo = min(gradient_lo, r.gradient);
+                gradient_hi = max(gradient_hi, r.gradient);
+                border[i] = r.side * r.g + band;
+                gradient_x[i] = r.gradient.x;
+                gradient_y[i] = r.gradient.y;
+                drift[i] = r.drift;
+                eta = min(eta, r.eta);
+                alone += cost_of(own.lo, own.hi, 1u);
+                together |= 1u << i;
+            } else {
+                apart |= 1u << i;
+            }
+        }
+    }
+    ss_packet_begin(uv, 0.5 * (gradient_lo + gradient_hi), side, eta, packet);
+    for (uint todo = together; todo != 0u; todo &= todo - 1u) {
+        const int i = findLSB(todo);
+        ss_packet_add(packet, vec2(at_u[i], at_v[i]), at_g[i], border[i], vec2(gradient_x[i], gradient_y[i]), drift[i]);
+    }
+    if (!ALONE && cost_of(samples.lo, samples.hi, uint(bitCount(together))) > alone) {
+        apart |= together;
+        together = 0u;
+        samples.hi = samples.lo - 2;
+    }
+    if (SS_STATS) {
+        ss_count(SS_STAT_LIT, lit_count);
+        ss_count(SS_STAT_UMBRA, dark_count);
+    }
+    return apart;
+}
+
+// Pixels that a smaller packet or they themselves must be evaluated for.
+void pass_on(uint id, uint pixels, float g_hi)
+{
+    if (SS_SPLIT) {
+        for (uint i = 0u; i < 4u; i++) {
+            const uint x = 2u * (i & 1u), y = i & 2u, part = pixels >> (x + 4u * y) & SS_SMALL_MASK;
+            if (part != 0u)
+                ss_append_packet(push.round, SS_LIST_SMALL, id + x + SS_TILE_X * y, g_hi, part);
+        }
+    } else {
+        for (uint todo = pixels; todo != 0u; todo &= todo - 1u) {
+            const ivec2 at = offset_of(findLSB(todo));
+            ss_append_pixel(push.round, id + uint(at.x) + SS_TILE_X * uint(at.y), g_hi);
+        }
+    }
 }
 
 void main()
 {
     const uint index = (gl_WorkGroupID.y * SS_DISPATCH_WIDTH + gl_WorkGroupID.x) * SS_EVALUATE_GROUP + gl_LocalInvocationIndex;
-    if (index >= control.evaluate_args[push.round].w)
+    if (index >= control.evaluate_args[SS_LISTS * push.round + LIST].w)
         return;
-    const uint id = tiles[ss_active_slot(index)];
-    const float g_hi = uintBitsToFloat(tiles[ss_active_slot(index) + 1u]);
-    const ivec2 pixel = ss_tile_pixel(id / SS_TILE_PIXELS, id % SS_TILE_PIXELS);
+    const uint slot = ALONE ? ss_pixel_slot(index) : ss_packet_slot(LIST, index);
+    const uint id = tiles[slot], mask = ALONE ? 1u : tiles[slot + 2u];
+    const float g_hi = uintBitsToFloat(tiles[slot + 1u]);
+    const ivec2 corner = ss_tile_pixel(id / SS_TILE_PIXELS, id % SS_TILE_PIXELS);
 
-    const ss_receiver r = ss_load_receiver(pixel);
-    const ss_samples samples = ss_receiver_samples(r, g_hi);
-    float band;
     // The square that areas are clipped to becomes [0, 1] x [0, 1].
-    const ss_back_projection b = ss_back_project_from(r, ss_biased(r, samples.level, band), 0.5, 0.5 / occ.extent.x);
-    const float orientation = determinant(b.matrix) < 0.0 ? -1.0 : 1.0;
-    float occlusion = 0.0;
-    uint edges = 0u;
-    for (uint layer = 0u; layer < ss_layers(); layer++) {
-        const float signed_area = orientation * layer_area(layer, samples, b, r, band, edges);
-        const float area = signed_area > 0.0 ? min(signed_area, 1.0) : 0.0; // not a number is nothing
-        occlusion = SS_MERGE_MAXIMUM ? max(occlusion, area) : min(occlusion + area, 1.0);
+    light_map = ss_to_light(0.5, 0.5 / occ.extent.x);
+    uint apart = load_packet(corner, mask, g_hi), edges = 0u;
+    const bool incoherent = apart != 0u;
+    touched = 0u;
+    resolved = 0u;
+    diverged = false;
+    [[unroll]] for (int i = 0; i < N; i++)
+        area[i] = occlusion[i] = 0.0;
+    add_layers(edges);
+    const uint done = diverged ? 0u : together;
+    apart |= together & ~done;
+    for (uint todo = done; todo != 0u; todo &= todo - 1u) {
+        const int i = findLSB(todo);
+        const ivec2 pixel = corner + offset_of(i);
+        const float visible = max(1.0 - occlusion[i] - horizon[i], 0.0);
+        const bool between = (touched >> i & 1u) != 0u || horizon[i] > 0.0;
+        ss_write_visibility(pixel, visible);
+        if (SS_SPARSE)
+            ss_store_visible(pixel, between ? visible : visible > 0.5 ? SS_ALL_LIT : SS_ALL_DARK);
     }
-    const float visible = max(1.0 - occlusion - r.horizon, 0.0);
-    ss_write_visibility(pixel, visible);
-    if (SS_SPARSE)
-        ss_store_visible(pixel, edges == 0u && r.horizon == 0.0 ? SS_ALL_LIT : visible);
+    if (!ALONE)
+        pass_on(id, apart, g_hi);
     if (SS_STATS) {
-        ss_count(SS_STAT_PRIMITIVES, edges);
-        if (samples.clamped)
-            ss_count(SS_STAT_CLAMPED, 1u);
+        const uint n = uint(bitCount(done));
+        ss_count(SS_STAT_ACTIVE, n);
+        ss_count(SS_STAT_PRIMITIVES, edges * n);
+        ss_count(SS_STAT_CLAMPED, samples.clamped ? n : 0u);
+        ss_count(SS_STAT_VISITED, ss_visited);
+        ss_count(SS_STAT_PACKETS, ALONE ? 0u : 1u);
+        ss_count(SS_STAT_INCOHERENT, incoherent ? 1u : 0u);
+        ss_count(SS_STAT_DIVERGED, diverged ? 1u : 0u);
     }
 }

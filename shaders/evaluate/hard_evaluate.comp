@@ -1,5 +1,6 @@
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_GOOGLE_include_directive : require
 // A light without extent: one texel per layer, compared with the receiver's plane at the texel's centre.
 #include "ss_types.h"

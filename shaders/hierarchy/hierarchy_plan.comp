@@ -42,7 +42,7 @@ void main()
     for (uint i = 0u; i < SS_MAX_LEVELS; i++) {
         // Rows of invocations: every one makes SS_WIDEN_ROWS rows of texels, 2^i apart.
         const uint block = SS_WIDEN_ROWS << i, rows = (size.y + block - 1u) / block << i;
-        plan.args[i] = uvec4(i < wanted ? (size.x + 31u) / 32u : 0u, (rows + 3u) / 4u, occ.size.z, 0u);
+        plan.args[i] = uvec4(i < wanted ? (size.x + 31u) / 32u : 0u, (rows + 3u) / 4u, 1u, 0u);
     }
     plan.built = uvec4(wanted, occ.levels.z - wanted, 0u, 0u);
 }

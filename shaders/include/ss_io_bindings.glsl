@@ -22,26 +22,31 @@ layout(set = SS_SET_IO, binding = SS_BIND_TILES, std430) buffer ss_tiles_buffer
     uint tiles[];
 };
 
-// Where the parts of the tiles buffer begin; SS_TILE_WORDS says what they are.
+// Where entries of the tiles buffer's parts are; SS_TILE_WORDS says what they are.
 uint ss_undecided_slot(uint i)
 {
     return frame.tiles.z + 2u * i;
 }
 
-uint ss_active_slot(uint i)
+uint ss_pixel_slot(uint i)
 {
-    return 3u * frame.tiles.z + 2u * i;
+    return frame.lists.x + 2u * i;
 }
 
-uint ss_interpolated_slot(uint i)
+uint ss_packet_slot(uint list, uint i)
 {
-    return ss_active_slot(frame.tiles.z * SS_TILE_PIXELS - 1u - i);
+    return (list == SS_LIST_LARGE ? frame.lists.y : frame.lists.z) + SS_PACKET_WORDS * i;
+}
+
+uint ss_interpolated_slot(uint i, uint words)
+{
+    return frame.lists.w + words * i;
 }
 
 // Four floats of column `column` of a tile.
 uint ss_column_slot(uint tile, uint column)
 {
-    return 3u * frame.tiles.z + 4u * (tile * SS_TILE_X + column);
+    return frame.lists.x + 4u * (tile * SS_TILE_X + column);
 }
 
 void ss_count(uint stat, uint n)

@@ -71,13 +71,12 @@ float ss_sample_offset(uint level)
     return level == 0u ? 0.5 : 0.5 * float(1u << level) + (SS_SAMPLED ? 0.5 : 0.0);
 }
 
-ss_samples ss_kernel_samples(vec4 box)
+// Samples of a level that a kernel asks for.
+ss_samples ss_level_samples(vec4 box, uint level)
 {
     ss_samples s;
     const ivec2 limit = ivec2(occ.size.xy) - 1;
-    const ivec2 first = clamp(ss_floor(box.xy), ivec2(0), limit), last = clamp(ss_floor(box.zw), ivec2(0), limit);
-    const int extent = max(last.x - first.x, last.y - first.y) + 1;
-    s.level = ss_extent_level(extent);
+    s.level = level;
     s.clamped = s.level > frame.quality.y;
     const float t = float(1u << s.level);
     const vec2 a = (box.xy - ss_sample_offset(s.level)) / t, b = (box.zw - ss_sample_offset(s.level)) / t;
@@ -92,6 +91,13 @@ ss_samples ss_kernel_samples(vec4 box)
     s.texel_lo = (inner ? clamp(ss_floor(a + 0.5), ivec2(0), top) : s.lo) << int(s.level);
     s.texel_hi = min((((inner ? clamp(ss_floor(b + 0.5), ivec2(0), top) : s.hi) + 1) << int(s.level)) - 1, limit);
     return s;
+}
+
+ss_samples ss_kernel_samples(vec4 box)
+{
+    const ivec2 limit = ivec2(occ.size.xy) - 1;
+    const ivec2 first = clamp(ss_floor(box.xy), ivec2(0), limit), last = clamp(ss_floor(box.zw), ivec2(0), limit);
+    return ss_level_samples(box, ss_extent_level(max(last.x - first.x, last.y - first.y) + 1));
 }
 
 // Half the thickness of the band around the receiver's plane that counts as the receiver's own surface, in texels' rise. A
@@ -123,15 +129,14 @@ ss_samples ss_receiver_samples(ss_receiver r, float g_hi)
     return ss_kernel_samples(ss_kernel_box(r.uv, r.uv, r.g, occ.light.w - occ.light.z * r.g, g_hi));
 }
 
-// Whether all samples occlude, given that those do which classification looks at: nearer than `least` in one layer. The rim is
+// Whether all samples occlude, given that those do which classification looks at: nearer than `least` in the first layer. The rim is
 // looked at only where that is so, by a loop, because the software driver runs both sides of a branch.
 bool ss_rim_occludes(ss_samples s, bool others_do, float least)
 {
     const ivec2 lo = s.lo << int(s.level), hi = min(((s.hi + 1) << int(s.level)) - 1, ivec2(occ.size.xy) - 1);
-    const uint layers = SS_IS_CONTOUR && others_do ? ss_layers() : 0u;
     float farthest = -3e38;
-    for (uint layer = 0u; layer < layers; layer++)
-        farthest = max(farthest, ss_range(layer, lo, hi).x);
+    for (int i = SS_IS_CONTOUR && others_do ? 0 : 1; i < 1; i++)
+        farthest = ss_range(lo, hi).x;
     return others_do && (!SS_IS_CONTOUR || farthest > least);
 }
 
@@ -146,10 +151,7 @@ struct ss_kernel
 // Fan depth of the nearest occluder of the map.
 float ss_nearest()
 {
-    float g = -3e38;
-    for (uint layer = 0u; layer < ss_layers(); layer++)
-        g = max(g, ss_root(layer).y);
-    return g;
+    return ss_root().y;
 }
 
 // Kernel with iterative refinement, and what follows from the depth ranges alone. No occluder that matters to the receiver is
@@ -163,10 +165,8 @@ ss_kernel ss_find_kernel(ss_receiver r, float g_hi)
         k.samples = ss_receiver_samples(r, g_hi);
         if (!SS_HIERARCHY)
             break;
-        vec2 range = vec2(-3e38);
-        for (uint layer = 0u; layer < ss_layers(); layer++)
-            range = max(range, ss_range(layer, k.samples.texel_lo, k.samples.texel_hi));
-        k.nodes += 4u * ss_layers();
+        const vec2 range = ss_range(k.samples.texel_lo, k.samples.texel_hi);
+        k.nodes += 4u;
         float band;
         const float g = ss_biased(r, k.samples.level, band);
         // Rise of the receiver's plane over the samples, and over what a query of a few texels takes in.
@@ -188,6 +188,21 @@ ss_kernel ss_find_kernel(ss_receiver r, float g_hi)
     }
     k.g_hi = g_hi;
     return k;
+}
+
+// Only what evaluation needs of that: the nearest occluder that matters, after so many refinements, and whether nothing in the
+// kernel is nearer than the receiver.
+float ss_refine_kernel(ss_receiver r, float g_hi, out bool lit)
+{
+    lit = false;
+    [[unroll]] for (int i = 0; i < (SS_HIERARCHY ? SS_PACKET_REFINEMENTS : 0); i++) {
+        const ss_samples s = ss_receiver_samples(r, g_hi);
+        const float nearest = ss_range(s.texel_lo, s.texel_hi).y;
+        float band;
+        lit = lit || !(nearest > ss_biased(r, s.level, band));
+        g_hi = min(g_hi, nearest);
+    }
+    return g_hi;
 }
 
 #endif

@@ -30,6 +30,28 @@ vec2 ss_back_project(ss_back_projection b, vec2 uv, float g)
     return b.matrix * ((uv - b.uv) * (b.den / (g - b.g))) + b.constant;
 }
 
+// The same for many receivers of one light: what does not depend on them.
+struct ss_light_map
+{
+    mat2 matrix;
+    vec2 constant;
+};
+
+// To `middle` +- `half_side` across the light.
+ss_light_map ss_to_light(float middle, float half_side)
+{
+    ss_light_map l;
+    l.matrix = half_side * mat2(occ.a_inverse.x, occ.a_inverse.z, occ.a_inverse.y, occ.a_inverse.w);
+    l.constant = middle - l.matrix * occ.light.xy;
+    return l;
+}
+
+vec2 ss_map_to_light(ss_light_map l, vec3 receiver, vec3 at)
+{
+    const float t = (occ.light.w - occ.light.z * receiver.z) / (at.z - receiver.z);
+    return l.matrix * ((at.xy - receiver.xy) * t + occ.light.z * receiver.xy) + l.constant;
+}
+
 // The texel whose depth a coarse texel takes; level 0 is its own.
 ivec2 ss_sampled_texel(ivec2 at, uint level)
 {

@@ -2,7 +2,6 @@
 #ifndef SS_SPECIALIZATION_GLSL
 #define SS_SPECIALIZATION_GLSL
 
-layout(constant_id = SS_SPEC_ACCEL_WIDE) const bool SS_ACCEL_WIDE = true;
 layout(constant_id = SS_SPEC_PATTERN_SIDE) const int SS_PATTERN_SIDE = 16;
 layout(constant_id = SS_SPEC_JITTERED) const bool SS_JITTERED = true;
 layout(constant_id = SS_SPEC_PRIMITIVE) const int SS_PRIMITIVE = SS_PRIMITIVE_QUAD;
@@ -15,5 +14,10 @@ layout(constant_id = SS_SPEC_FILTER) const bool SS_FILTER = false;
 layout(constant_id = SS_SPEC_NORMALS) const bool SS_NORMALS = false;
 layout(constant_id = SS_SPEC_LAYERED) const bool SS_LAYERED = true;
 layout(constant_id = SS_SPEC_SPARSE) const bool SS_SPARSE = false;
+layout(constant_id = SS_SPEC_PACKET) const int SS_PACKET = 1;
+layout(constant_id = SS_SPEC_BLOCK) const int SS_BLOCK = 4;
+const uint SS_BLOCK_ROW = (SS_TILE_X + SS_BLOCK - 1) / SS_BLOCK; // blocks in a row of a tile; the last may stick out of it
+const uint SS_TILE_BLOCKS = SS_BLOCK_ROW * SS_BLOCK_ROW;
+layout(constant_id = SS_SPEC_SPLIT) const bool SS_SPLIT = false;
 
 #endif

@@ -36,7 +36,8 @@ typedef struct ss_ivec4 {
 #define SS_BIND_OCCLUDERS 0 /* uniform: ss_occluders and ss_plan */
 #define SS_BIND_PLAN 1       /* ss_plan, where it is written */
 #define SS_BIND_MADE_DEPTH 2  /* storage texels, where they are written: fan depths, four of a row to a texel */
-#define SS_BIND_MADE_RANGES 3 /* vec2 (farthest, nearest): a layer's HSM levels 1 to top, its MSSM levels 1 to n */
+#define SS_BIND_MADE_RANGES 3 /* vec2 (farthest, nearest): HSM levels 1 to top of each layer, and with several of all together;
+                                 MSSM levels 1 to n of all together */
 #define SS_BIND_DEPTHS 4      /* uniform texels, where they are read: single fan depths */
 #define SS_BIND_DEPTH_QUADS 5 /* four of them */
 #define SS_BIND_RANGES 6
@@ -53,20 +54,22 @@ typedef struct ss_ivec4 {
 #define SS_IO_BINDINGS 7
 
 /* Specialization constants. */
-#define SS_SPEC_ACCEL_WIDE 0   /* 1: the pyramid's coarse part is an MSSM (MSSM, YSM) */
-#define SS_SPEC_PATTERN_SIDE 1 /* 0 (area only), 8, 16, 32 */
-#define SS_SPEC_JITTERED 2
-#define SS_SPEC_PRIMITIVE 3 /* SS_PRIMITIVE_* */
-#define SS_SPEC_SAMPLED 4   /* 1: coarse levels take one texel's depth, 0: the nearest depth */
-#define SS_SPEC_MERGE_MAXIMUM 5
-#define SS_SPEC_AREA 6      /* 1: accumulate areas */
-#define SS_SPEC_HIERARCHY 7 /* 0: no pruning, no classification */
-#define SS_SPEC_STATS 8
-#define SS_SPEC_FILTER 9   /* 1: keep values for the post filter */
-#define SS_SPEC_NORMALS 10 /* 1: normals are bound */
-#define SS_SPEC_LAYERED 11 /* 1: more than one layer */
-#define SS_SPEC_SPARSE 12 /* 1: some pixels are interpolated */
-#define SS_SPEC_COUNT 13
+#define SS_SPEC_PATTERN_SIDE 0 /* 0 (area only), 8, 16, 32 */
+#define SS_SPEC_JITTERED 1
+#define SS_SPEC_PRIMITIVE 2 /* SS_PRIMITIVE_* */
+#define SS_SPEC_SAMPLED 3   /* 1: coarse levels take one texel's depth, 0: the nearest depth */
+#define SS_SPEC_MERGE_MAXIMUM 4
+#define SS_SPEC_AREA 5      /* 1: accumulate areas */
+#define SS_SPEC_HIERARCHY 6 /* 0: no pruning, no classification */
+#define SS_SPEC_STATS 7
+#define SS_SPEC_FILTER 8   /* 1: keep values for the post filter */
+#define SS_SPEC_NORMALS 9  /* 1: normals are bound */
+#define SS_SPEC_LAYERED 10 /* 1: perhaps more than one layer */
+#define SS_SPEC_SPARSE 11  /* 1: some pixels are interpolated */
+#define SS_SPEC_PACKET 12  /* pixels a side of a packet that one invocation evaluates: 1 to 4 */
+#define SS_SPEC_BLOCK 13   /* pixels a side of the blocks that are classified: 3 or 4 */
+#define SS_SPEC_SPLIT 14   /* 1: 4 x 4 packets that are not of one contour go on as 2 x 2 ones, before single pixels */
+#define SS_SPEC_COUNT 15
 
 #define SS_PRIMITIVE_PATCH 0
 #define SS_PRIMITIVE_PATCH_EXTENDED 1
@@ -83,10 +86,22 @@ typedef struct ss_ivec4 {
 #define SS_WIDEN_ROWS 4       /* that one invocation of hierarchy_widen makes */
 #define SS_TILE_REFINEMENTS 2 /* of kernels: a third pays for pixels only */
 #define SS_MAX_REFINEMENTS 3
-/* Words per tile in the tiles buffer: state, undecided list (tile, nearest occluder), and scratch that holds the bounds
- * of the tile's columns first and the active list (pixel, nearest occluder) later; pixels that may be interpolated are
- * listed from its end. */
+#define SS_PACKET_REFINEMENTS 2 /* of a pixel's kernel after its block's */
+/* Lists of what one invocation evaluates: packets of the largest size, packets of 2 x 2 pixels, single pixels. There are two
+ * rounds of them, the second for what interpolation leaves. */
+#define SS_LIST_LARGE 0
+#define SS_LIST_SMALL 1
+#define SS_LIST_PIXELS 2
+#define SS_LISTS 3
+#define SS_SMALL_MASK 0x0033u   /* of a packet of 2 x 2 pixels: bit x + 4 y */
+#define SS_LATTICE_MASK 0x0505u /* every second pixel of every second row */
+/* Words per tile in the tiles buffer. All tiles: state; undecided list (tile, nearest occluder); scratch for the bounds of the
+ * tile's columns first and the list of single pixels (pixel, nearest occluder) later. Then what settings ask for: lists of
+ * packets (first pixel, nearest occluder, mask of pixels), at most one for each 3 x 3 or 2 x 2 pixels, and what is looked at
+ * between the rounds: pixels (pixel, nearest occluder) or blocks (as packets). A list serves both rounds in turn. */
 #define SS_TILE_WORDS (1 + 2 + 2 * SS_TILE_PIXELS)
+#define SS_PACKET_WORDS 3
+#define SS_INTERPOLATED_WORDS (2 * SS_TILE_PIXELS * 3 / 4)
 #define SS_DISPATCH_WIDTH 32768 /* indirect dispatches wrap into y beyond this */
 
 #define SS_STATE_LIT 0
@@ -106,10 +121,10 @@ SS_STRUCT(ss_occluders)
     SS_VEC4 light;      /* U.x, U.y, delta, epsilon */
     SS_VEC4 depths;     /* map's part of eta; tangent (or world size) of a texel in u, v; fan depth of the far plane */
     SS_VEC4 extent;     /* half side of the square that areas are clipped to; unused */
-    SS_UVEC4 size;      /* width, height, layers; unused */
+    SS_UVEC4 size;      /* width, height, layers; place of the pyramid over all layers among the layers' */
     SS_UVEC4 levels;    /* top of the pyramid, join level, wide levels there is room for, their width */
-    SS_UVEC4 strides;   /* per layer: quads of fan depths, texels of ranges; first texel of wide level 1, texels per wide
-                           level */
+    SS_UVEC4 strides;   /* per layer: quads of fan depths, texels of the pyramid; first texel of wide level 1, texels per
+                           wide level */
     SS_UVEC4 unused[8]; /* ss_plan begins at a multiple of every offset alignment */
     /* Per level: first texel and width of its ranges, which level 0 has none of; first quad of its sampled fan depths, quads
      * in a row of them. */
@@ -136,17 +151,18 @@ SS_STRUCT(ss_frame)
     SS_UVEC4 tiles;        /* tiles in x, y, their number; unused */
     SS_UVEC4 quality;      /* budget (0: none), least level, pixels in the render area; unused */
     SS_UVEC4 flags[2];     /* [0].x: SS_FLAG_*; [1] unused */
+    SS_VEC4 cost;          /* Yang et al. 2009, equation 6: Q_n, Q_e, Q_v; unused */
+    SS_UVEC4 lists;        /* where they begin in the tiles buffer: single pixels, large and small packets, interpolated */
 }
 SS_STRUCT_END(ss_frame);
 
 /* Indirect arguments and counters; cleared by the host's update before each call. Counters are low, high words. */
 SS_STRUCT(ss_control)
 {
-    SS_UVEC4 pixels_args;   /* groups x, y, z; tiles in the undecided list */
-    SS_UVEC4 evaluate_args[2]; /* groups x, y, z; pixels in the active list, in the first and in the second round */
-    SS_UVEC4 interpolate_args; /* groups x, y, z; pixels in the list of those that may be interpolated */
-    SS_UINT stats[20];         /* softsh_stats, as pairs of words; storage buffers only */
-    SS_UINT unused[12];
+    SS_UVEC4 pixels_args;      /* groups x, y, z; tiles in the undecided list */
+    SS_UVEC4 interpolate_args; /* groups x, y, z; entries in the list of what may be interpolated */
+    SS_UVEC4 evaluate_args[2 * SS_LISTS]; /* groups x, y, z; entries: of each round's lists */
+    SS_UINT stats[32];                    /* softsh_stats, as pairs of words; storage buffers only */
 }
 SS_STRUCT_END(ss_control);
 
@@ -160,6 +176,10 @@ SS_STRUCT_END(ss_control);
 #define SS_STAT_UNDECIDED 7
 #define SS_STAT_CLAMPED 8
 #define SS_STAT_INTERPOLATED 9
+#define SS_STAT_PACKETS 10
+#define SS_STAT_INCOHERENT 11
+#define SS_STAT_DIVERGED 12
+#define SS_STAT_VISITED 13
 
 /* Push constants of the passes that need some. */
 SS_STRUCT(ss_convert_push)
@@ -179,8 +199,9 @@ SS_STRUCT_END(ss_level_push);
 
 SS_STRUCT(ss_evaluate_push)
 {
-    SS_UINT round; /* 0, or with interpolation 1: the pixels it left */
-    SS_UINT unused[3];
+    SS_UINT round;  /* 0, or with interpolation 1: the pixels it left */
+    SS_UINT stride; /* between the pixels of a packet: 2 where every second one is evaluated */
+    SS_UINT unused[2];
 }
 SS_STRUCT_END(ss_evaluate_push);
 

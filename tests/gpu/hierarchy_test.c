@@ -107,18 +107,33 @@ static void check_levels(const readback *r)
                     const float sample = readback_sample(r, layer, level, x, y);
                     assert_memory_equal(&sample, &g[(size_t)v * r->width + u], sizeof sample);
                 }
-        for (uint32_t level = 1; level <= r->wide_built; level++) {
-            const uint32_t width = reference_hsm_size(r->width, r->join),
-                           height = reference_hsm_size(r->height, r->join);
-            const uint64_t work = ((uint64_t)r->width * r->height) << 2 * (level < 8 ? level : 8);
-            const uint32_t step = (uint32_t)(work / 50000000) * 2 + 1;
-            for (uint32_t y = 0; y < height; y++)
-                for (uint32_t x = 0; x < width; x++)
-                    if (looked_at(x, y, width, height, step))
-                        same(readback_wide(r, layer, level, x, y),
-                             reference_ysm(g, r->width, r->height, r->join, r->join + level, x, y), r, "wide", level, x,
-                             y);
-        }
+    }
+    /* Over all layers: the first one's farthest, the nearest of all. */
+    for (uint32_t level = 1; level <= r->top && r->layers > 1; level++)
+        for (uint32_t y = 0; y < reference_hsm_size(r->height, level); y++)
+            for (uint32_t x = 0; x < reference_hsm_size(r->width, level); x++) {
+                reference_range all = readback_pyramid(r, 0, level, x, y);
+                for (uint32_t layer = 1; layer < r->layers; layer++)
+                    all.max = fmaxf(all.max, readback_pyramid(r, layer, level, x, y).max);
+                same(readback_pyramid(r, r->layers, level, x, y), all, r, "pyramid over all", level, x, y);
+            }
+    for (uint32_t level = 1; level <= r->wide_built; level++) {
+        const uint32_t width = reference_hsm_size(r->width, r->join), height = reference_hsm_size(r->height, r->join);
+        const uint64_t work = ((uint64_t)r->width * r->height) << 2 * (level < 8 ? level : 8);
+        const uint32_t step = (uint32_t)(work / 50000000) * 2 + 1;
+        for (uint32_t y = 0; y < height; y++)
+            for (uint32_t x = 0; x < width; x++)
+                if (looked_at(x, y, width, height, step)) {
+                    reference_range all = {0};
+                    for (uint32_t layer = 0; layer < r->layers; layer++) {
+                        const float *const g = r->fan_depth + (size_t)layer * r->width * r->height;
+                        const reference_range own =
+                            reference_ysm(g, r->width, r->height, r->join, r->join + level, x, y);
+                        all.max = layer ? fmaxf(all.max, own.max) : own.max;
+                        all.min = layer ? all.min : own.min;
+                    }
+                    same(readback_wide(r, level, x, y), all, r, "wide", level, x, y);
+                }
     }
 }
 

@@ -64,11 +64,13 @@ static void check(const scene *s, sight *plain, sight *sparse, bool normals, cou
     eye_create(&info, &e);
     sight_run(plain, &l, &e, NULL, full, &before);
     sight_run(sparse, &l, &e, NULL, result, &after);
-    assert_int_equal(before.active, after.active);
+    /* Evaluation may find that a pixel is lit or dark after all. */
+    assert_true(before.active <= after.active && after.active - before.active <= after.interpolated);
     assert_int_equal(before.interpolated, 0);
     for (int i = 0; i < PIXELS; i++) {
         double mean = 0.0;
-        if (memcmp(&full[i], &result[i], sizeof *full) == 0)
+        /* Packets are rounded otherwise. */
+        if (fabsf(full[i] - result[i]) <= 1e-6f)
             continue;
         changed++;
         assert_true(may_interpolate(s->depth, full, i % WIDTH, i / WIDTH, &mean));
@@ -118,10 +120,56 @@ static void pixels_are_evaluated_or_means(void **state)
             100.0 * (double)rough.interpolated / (double)rough.active, smooth.sum / (double)(smooth.changed + 1),
             smooth.most);
         assert_true(smooth.interpolated > smooth.active / 5);
-        assert_true(rough.interpolated < rough.active / 2);
+        /* Without a hierarchy what lies in full light or shadow is active too. */
+        assert_true(views[k].no_hierarchy || rough.interpolated < rough.active / 2);
         assert_true(smooth.sum <= 0.02 * (double)smooth.changed);
         sight_destroy(&sparse);
         sight_destroy(&plain);
+    }
+}
+
+/* All pixels active and none on one surface with its neighbours: both lists are as long as they can be. */
+static void nothing_to_interpolate(void **state)
+{
+    const scene_info from = {.map_width = 70, .map_height = 56, .width = WIDTH, .height = HEIGHT};
+    static float full[PIXELS], result[PIXELS];
+    (void)state;
+    for (int bits = 0; bits < 2; bits++) {
+        sight_info info = {.settings = views[bits ? 1 : 4], .width = WIDTH, .height = HEIGHT};
+        uint64_t random = 5;
+        softsh_stats stats;
+        sight plain, sparse;
+        scene s;
+        lamp l;
+        eye e;
+
+        info.settings.no_hierarchy = 1;
+        scene_create(&from, &s);
+        for (int i = 0; i < PIXELS; i++)
+            s.depth[i] = (float)reference_random_range(&random, 0.955, 0.965);
+        eye_info eye_from = s.eye;
+        eye_from.normals = NULL;
+        lamp_create(&s.lamp, &l);
+        eye_create(&eye_from, &e);
+        sight_create(&info, &plain);
+        info.settings.sparse = 1;
+        sight_create(&info, &sparse);
+        sight_run(&plain, &l, &e, NULL, full, NULL);
+        sight_run(&sparse, &l, &e, NULL, result, &stats);
+        print_message("%u of %u pixels active, %u interpolated\n", (unsigned)stats.active, PIXELS,
+                      (unsigned)stats.interpolated);
+        assert_true(stats.active > 0.8 * PIXELS && stats.interpolated < PIXELS / 20);
+        for (int i = 0; i < PIXELS; i++) {
+            double mean = 0.0;
+            if (fabsf(full[i] - result[i]) > 2e-6f)
+                assert_true(may_interpolate(s.depth, full, i % WIDTH, i / WIDTH, &mean) &&
+                            fabs((double)result[i] - mean) <= 2e-6);
+        }
+        sight_destroy(&sparse);
+        sight_destroy(&plain);
+        eye_destroy(&e);
+        lamp_destroy(&l);
+        scene_destroy(&s);
     }
 }
 
@@ -179,6 +227,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pixels_are_evaluated_or_means),
+        cmocka_unit_test(nothing_to_interpolate),
         cmocka_unit_test(narrow_shadows_stay),
     };
     return cmocka_run_group_tests(tests, fixture_setup, fixture_teardown);

@@ -52,9 +52,10 @@ void readback_create(const lamp *l, readback *out)
     out->join = layout.join;
     out->wide_built = plan->built.x;
     out->wide_allocated = layout.wide_levels;
-    out->wide_offset = layout.wide_offset;
+    out->wide_offset = (size_t)layout.wide_offset;
     out->wide_texels = layout.wide_texels;
-    out->layer_texels = (size_t)layout.layer_texels;
+    out->pyramid_texels = (size_t)layout.pyramid_texels;
+    out->pyramids = layout.pyramids;
     memcpy(out->pyramid_offsets, layout.offsets, sizeof out->pyramid_offsets);
     memcpy(out->quads, layout.quads, sizeof out->quads);
     out->layer_quads = (size_t)layout.layer_quads;
@@ -80,7 +81,7 @@ void readback_destroy(readback *r)
 
 reference_range readback_pyramid(const readback *r, uint32_t layer, uint32_t level, uint32_t x, uint32_t y)
 {
-    return r->ranges[layer * r->layer_texels + r->pyramid_offsets[level] +
+    return r->ranges[layer * r->pyramid_texels + r->pyramid_offsets[level] +
                      (size_t)y * reference_hsm_size(r->width, level) + x];
 }
 
@@ -90,9 +91,9 @@ float readback_sample(const readback *r, uint32_t layer, uint32_t level, uint32_
     return r->samples[4 * (layer * r->layer_quads + r->quads[level]) + y * row + x];
 }
 
-reference_range readback_wide(const readback *r, uint32_t layer, uint32_t level, uint32_t x, uint32_t y)
+reference_range readback_wide(const readback *r, uint32_t level, uint32_t x, uint32_t y)
 {
-    return r->ranges[layer * r->layer_texels + r->wide_offset + (size_t)(level - 1) * r->wide_texels +
+    return r->ranges[r->wide_offset + (size_t)(level - 1) * r->wide_texels +
                      (size_t)y * reference_hsm_size(r->width, r->join) + x];
 }
 

@@ -9,8 +9,8 @@ typedef struct readback {
     uint32_t width, height, layers;
     uint32_t top, join;                  /* levels of the pyramid; the one the wide levels start from */
     uint32_t wide_allocated, wide_built; /* levels */
-    uint32_t pyramid_offsets[16], wide_offset, wide_texels; /* in a layer's ranges */
-    size_t layer_texels;
+    uint32_t pyramid_offsets[16], pyramids, wide_texels;
+    size_t pyramid_texels, wide_offset;
     uint32_t quads[16]; /* of fan depths, where levels begin */
     size_t layer_quads;
     float *samples;   /* as the device has them */
@@ -20,12 +20,13 @@ typedef struct readback {
 
 void readback_create(const lamp *l, readback *out);
 void readback_destroy(readback *r);
-/* One texel of pyramid level `level` and, at the resolution of level `join`, of wide level `level`; both count from 1.
+/* One texel of pyramid level `level`, which counts from 1; pyramid `layers`, if there is one, is that over all layers.
  */
 reference_range readback_pyramid(const readback *r, uint32_t layer, uint32_t level, uint32_t x, uint32_t y);
 /* Sampled fan depth of a level. */
 float readback_sample(const readback *r, uint32_t layer, uint32_t level, uint32_t x, uint32_t y);
-reference_range readback_wide(const readback *r, uint32_t layer, uint32_t level, uint32_t x, uint32_t y);
+/* Over all layers, at the resolution of level `join`, of wide level `level`, which counts from 1. */
+reference_range readback_wide(const readback *r, uint32_t level, uint32_t x, uint32_t y);
 
 /* What the post filter of a view's last run worked on: area occlusions of the pixels of a width x height render area,
  * and whether a pixel's tile was undecided. Areas of the other tiles mean nothing. */

@@ -1,0 +1,56 @@
+#version 460
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_GOOGLE_include_directive : require
+// Active pixels between those that were evaluated: the mean of their neighbours where these lie on the same surface and differ
+// little, otherwise on to the second round of evaluation. Penumbrae are smooth, and the smoother the wider they are (the adaptive
+// precision of Guennebaud et al. 2007); no noise, and nothing that moves with the camera but the lattice. One lane per block of
+// 4 x 4 pixels; what is left of a block is a packet again.
+#include "ss_types.h"
+#include "ss_specialization.glsl"
+#include "ss_occluder_bindings.glsl"
+#include "ss_io_bindings.glsl"
+#include "ss_filter_values.glsl"
+#include "ss_lists.glsl"
+#include "ss_receiver.glsl"
+#include "ss_range.glsl"
+#include "ss_kernel.glsl"
+#include "ss_interpolation.glsl"
+
+layout(local_size_x = SS_EVALUATE_GROUP) in;
+
+// Fewer pixels than these are not worth a packet.
+const uint LEAST_PACKET = 4u;
+
+void main()
+{
+    const uint index = (gl_WorkGroupID.y * SS_DISPATCH_WIDTH + gl_WorkGroupID.x) * SS_EVALUATE_GROUP + gl_LocalInvocationIndex;
+    if (index >= control.interpolate_args.w)
+        return;
+    const uint slot = ss_interpolated_slot(index, SS_PACKET_WORDS), id = tiles[slot], mask = tiles[slot + 2u];
+    const float g_hi = uintBitsToFloat(tiles[slot + 1u]);
+    const ivec2 corner = ss_tile_pixel(id / SS_TILE_PIXELS, id % SS_TILE_PIXELS);
+    uint left = 0u, interpolated = 0u;
+    for (uint todo = mask & ~SS_LATTICE_MASK; todo != 0u; todo &= todo - 1u) {
+        const uint bit = uint(findLSB(todo));
+        const ivec2 pixel = corner + ivec2(bit & 3u, bit >> 2);
+        float mean;
+        const bool may = ss_interpolates(pixel, g_hi, mean);
+        if (may)
+            ss_write_visibility(pixel, mean);
+        interpolated += uint(may);
+        left |= uint(!may) << bit;
+    }
+    if (SS_PACKET > 1 && uint(bitCount(left)) >= LEAST_PACKET) {
+        ss_append_packet(1u, SS_LIST_LARGE, id, g_hi, left);
+        left = 0u;
+    }
+    for (uint todo = left; todo != 0u; todo &= todo - 1u) {
+        const uint bit = uint(findLSB(todo));
+        ss_append_pixel(1u, id + (bit & 3u) + SS_TILE_X * (bit >> 2), g_hi);
+    }
+    if (SS_STATS) {
+        ss_count(SS_STAT_INTERPOLATED, interpolated);
+        ss_count(SS_STAT_ACTIVE, interpolated);
+    }
+}
