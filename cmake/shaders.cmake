@@ -15,7 +15,8 @@ set(SOFTSHADOW_SHADERS
     evaluate/interpolate
     evaluate/interpolate_blocks
     evaluate/hard_evaluate
-    filter/post_filter)
+    filter/post_filter
+    combine/combine_sublights)
 
 # softshadow_embed_shaders(OUT_DIRECTORY): compiles every shader of the manifest, checks it, and writes softshi_shaders.h
 # with an enumeration, names and code. Sets SOFTSHADOW_SHADER_OUTPUTS in the caller's scope.

@@ -47,6 +47,7 @@ void print_help()
         "  --light-size X      edge of the square light in world units, 0 to 1000; 0 is a point\n"
         "  --directional       a sun with an orthographic map in place of the square light, as large as that appears\n"
         "  --reversed          reversed depth for camera and map, with an infinite far plane where it can have one\n"
+        "  --sublights N       N x N parts of the square light, each with a map of one layer, in place of the layers\n"
         "  --size WxH          size of the picture, default 640x480\n"
         "  --map N             edge of the light's depth buffer in texels; default: the scene's own\n"
         "  --out FILE          the picture, .png\n"
@@ -87,6 +88,9 @@ void set_option(int c, Options &o)
         break;
     case 'l':
         o.scene_options.light_size = command_line.real("--light-size", optarg, 0.0, 1000.0);
+        break;
+    case 'u':
+        o.size.sublights = command_line.whole("--sublights", optarg, 1, 8);
         break;
     case 'z':
         command_line.size("--size", optarg, o.size.width, o.size.height);
@@ -133,6 +137,7 @@ Options parse(int argc, char **argv)
                                           {"technique", required_argument, nullptr, 't'},
                                           {"set", required_argument, nullptr, 'k'},
                                           {"light-size", required_argument, nullptr, 'l'},
+                                          {"sublights", required_argument, nullptr, 'u'},
                                           {"size", required_argument, nullptr, 'z'},
                                           {"map", required_argument, nullptr, 'p'},
                                           {"out", required_argument, nullptr, 'o'},

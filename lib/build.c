@@ -12,6 +12,7 @@ typedef struct build_plan {
     softshi_occluder_layout layout;            /* of the maps' extent */
     softshi_map_space maps[SOFTSH_MAX_LAYERS]; /* in the order given */
     softshi_light_space light;
+    softshi_sublight sublight;
 } build_plan;
 
 /* Layers differ in their near and far planes at most. */
@@ -53,20 +54,25 @@ static softsh_result plan_build(const softsh_occluders *o, const softsh_build_in
                             "softsh_cmd_build_occluders: no memory is bound to the occluders");
     softsh_result result = softshi_check_light(context, info->light);
     if (result == SOFTSH_SUCCESS)
-        result = softshi_check_maps(context, info->maps, info->map_count, o->max_extent, o->max_layers, &plan->extent);
+        result = softshi_check_maps(context, info, o->max_extent, o->max_layers, &plan->extent);
     if (result == SOFTSH_SUCCESS)
         result = softshi_check_timestamps(context, info->timestamps);
+    softsh_light light;
+    if (result == SOFTSH_SUCCESS) {
+        plan->sublight = softshi_sublight_of(info->maps);
+        light = softshi_sublight_light(info->light, &plan->sublight);
+    }
     for (uint32_t i = 0; i < info->map_count && result == SOFTSH_SUCCESS; i++) {
         char field[32];
         snprintf(field, sizeof field, "softsh_map[%u]", i);
-        result = softshi_map_space_create(context, info->light, &info->maps[i], plan->extent, field, &plan->maps[i]);
+        result = softshi_map_space_create(context, &light, &info->maps[i], plan->extent, field, &plan->maps[i]);
         if (result == SOFTSH_SUCCESS && i > 0)
             result = check_same_projection(context, &plan->maps[0], &plan->maps[i], i);
         if (result == SOFTSH_SUCCESS && i > 0)
             share_zero(&plan->maps[0], &plan->maps[i]);
     }
     if (result == SOFTSH_SUCCESS)
-        result = softshi_light_space_create(context, info->light, &plan->maps[0], &plan->light);
+        result = softshi_light_space_create(context, &light, &plan->maps[0], &plan->light);
     if (result == SOFTSH_SUCCESS)
         softshi_layout_occluders(plan->extent, info->map_count, o->join_texels, &plan->layout);
     return result;
@@ -156,6 +162,7 @@ softsh_result softsh_cmd_build_occluders(VkCommandBuffer cmd, softsh_occluders *
 
     o->built = true;
     o->layered = info->map_count > 1;
+    o->sublight = plan.sublight;
     o->map = plan.maps[0];
     o->light = plan.light;
     return SOFTSH_SUCCESS;

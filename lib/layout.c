@@ -94,12 +94,16 @@ VkDeviceSize softshi_layout_lists(const softsh_settings *settings, VkDeviceSize 
     return end;
 }
 
-void softshi_layout_view(VkExtent2D extent, const softsh_settings *settings, softshi_view_layout *out)
+uint32_t softshi_layout_planes(const softsh_settings *settings)
+{
+    return settings->filter_passes > 0 ? 3 : settings->sparse ? 1 : 0;
+}
+
+void softshi_layout_view(VkExtent2D extent, const softsh_settings *settings, bool sublights, softshi_view_layout *out)
 {
     const VkDeviceSize tiles =
         (VkDeviceSize)((extent.width + SS_TILE_X - 1) / SS_TILE_X) * ((extent.height + SS_TILE_Y - 1) / SS_TILE_Y);
-    /* Values kept per pixel. */
-    const uint32_t planes = settings->filter_passes > 0 ? 3 : settings->sparse ? 1 : 0;
+    const uint32_t planes = softshi_layout_planes(settings) + (sublights ? 2 : 0);
     ss_uvec4 lists;
     VkDeviceSize end = 0;
     out->frame = append(&end, sizeof(ss_frame));

@@ -42,7 +42,10 @@ typedef struct softshi_view_layout {
 /* First words of the lists in the tiles buffer of so many tiles, as ss_frame has them; returns the words of all. */
 VkDeviceSize softshi_layout_lists(const softsh_settings *settings, VkDeviceSize tiles, ss_uvec4 *lists);
 
+/* Planes of `filter` that the settings' own passes need; those of sub-lights come after them. */
+uint32_t softshi_layout_planes(const softsh_settings *settings);
+
 /* For resolved settings. */
-void softshi_layout_view(VkExtent2D extent, const softsh_settings *settings, softshi_view_layout *out);
+void softshi_layout_view(VkExtent2D extent, const softsh_settings *settings, bool sublights, softshi_view_layout *out);
 
 #endif

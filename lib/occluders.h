@@ -5,6 +5,7 @@
 #include "context.h"
 #include "layout.h"
 #include "projection.h"
+#include "sublight.h"
 #include "vulkan/memory.h"
 #include "vulkan/pass.h"
 
@@ -32,6 +33,7 @@ struct softsh_occluders {
     /* Of the last recorded build. */
     bool built;
     bool layered; /* more than one layer */
+    softshi_sublight sublight;
     softshi_map_space map;
     softshi_light_space light;
 };

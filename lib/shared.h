@@ -21,5 +21,6 @@ static_assert(sizeof(ss_control) == 256, "std430");
 static_assert(sizeof(ss_convert_push) == 32, "std430");
 static_assert(sizeof(ss_level_push) == 16, "std430");
 static_assert(sizeof(ss_filter_push) == 16, "std430");
+static_assert(sizeof(ss_combine_push) == 16, "std430");
 
 #endif

@@ -236,8 +236,20 @@ static softsh_result check_map(const softsh_context *context, const softsh_map *
         return INVALID("softsh_map[%u]::struct_size is %u, expected %u", i, map->struct_size, (unsigned)sizeof *map);
     if ((unsigned)map->role > SOFTSH_MAP_CASCADE)
         return INVALID("softsh_map[%u]::role is %d, expected a softsh_map_role", i, (int)map->role);
-    if (map->role != SOFTSH_MAP_LAYER)
-        return UNSUPPORTED("softsh_map[%u]::role is %d, only SOFTSH_MAP_LAYER is supported yet", i, (int)map->role);
+    if (map->role == SOFTSH_MAP_FACE || map->role == SOFTSH_MAP_CASCADE)
+        return UNSUPPORTED("softsh_map[%u]::role is %s, which is not supported yet", i,
+                           map->role == SOFTSH_MAP_FACE ? "SOFTSH_MAP_FACE" : "SOFTSH_MAP_CASCADE");
+    for (int axis = 0; axis < 2; axis++) {
+        if (map->role == SOFTSH_MAP_LAYER && (map->grid[axis] != 0 || map->cell[axis] != 0))
+            return INVALID("softsh_map[%u]::grid is (%u, %u) and ::cell (%u, %u), expected zeros with SOFTSH_MAP_LAYER", i,
+                           map->grid[0], map->grid[1], map->cell[0], map->cell[1]);
+        if (map->role == SOFTSH_MAP_SUBLIGHT && (map->grid[axis] == 0 || map->grid[axis] > SOFTSH_MAX_SUBLIGHTS))
+            return INVALID("softsh_map[%u]::grid is (%u, %u), expected 1 to %u each", i, map->grid[0], map->grid[1],
+                           SOFTSH_MAX_SUBLIGHTS);
+        if (map->role == SOFTSH_MAP_SUBLIGHT && map->cell[axis] >= map->grid[axis])
+            return INVALID("softsh_map[%u]::cell is (%u, %u), expected less than ::grid, (%u, %u)", i, map->cell[0],
+                           map->cell[1], map->grid[0], map->grid[1]);
+    }
     if (map->index >= count)
         return INVALID("softsh_map[%u]::index is %u, expected less than the number of maps, %u", i, map->index, count);
     if (map->array_layer != 0)
@@ -253,9 +265,28 @@ static softsh_result check_map(const softsh_context *context, const softsh_map *
     return check_extent(context, field, map->image_extent);
 }
 
-softsh_result softshi_check_maps(const softsh_context *context, const softsh_map *maps, uint32_t count,
-                                 VkExtent2D max_extent, uint32_t max_layers, VkExtent2D *extent)
+/* Maps of a build are all layers of the light, or all of one sub-light. */
+static softsh_result check_same_part(const softsh_context *context, const softsh_map *first, const softsh_map *map,
+                                     uint32_t i)
 {
+    if (map->role != first->role)
+        return INVALID("softsh_map[%u]::role is %d, but that of softsh_map[0] is %d, expected one role in a build", i,
+                       (int)map->role, (int)first->role);
+    if (map->grid[0] != first->grid[0] || map->grid[1] != first->grid[1] || map->cell[0] != first->cell[0] ||
+        map->cell[1] != first->cell[1])
+        return INVALID(
+            "softsh_map[%u] is of sub-light (%u, %u) of %u x %u, but softsh_map[0] of (%u, %u) of %u x %u, expected a build "
+            "for each sub-light",
+            i, map->cell[0], map->cell[1], map->grid[0], map->grid[1], first->cell[0], first->cell[1], first->grid[0],
+            first->grid[1]);
+    return SOFTSH_SUCCESS;
+}
+
+softsh_result softshi_check_maps(const softsh_context *context, const softsh_build_info *info, VkExtent2D max_extent,
+                                 uint32_t max_layers, VkExtent2D *extent)
+{
+    const softsh_map *const maps = info->maps;
+    const uint32_t count = info->map_count;
     if (count == 0)
         return INVALID("softsh_build_info::map_count is 0, expected 1 to %u", max_layers);
     if (!maps)
@@ -266,6 +297,8 @@ softsh_result softshi_check_maps(const softsh_context *context, const softsh_map
     uint32_t seen = 0;
     for (uint32_t i = 0; i < count; i++) {
         softsh_result result = check_map(context, &maps[i], i, count);
+        if (result == SOFTSH_SUCCESS)
+            result = check_same_part(context, &maps[0], &maps[i], i);
         VkRect2D rect = maps[i].rect;
         char field[48];
         snprintf(field, sizeof field, "softsh_map[%u]::rect", i);
@@ -282,6 +315,8 @@ softsh_result softshi_check_maps(const softsh_context *context, const softsh_map
             return INVALID("softsh_map[%u] is %u x %u, expected the size of the first layer, %u x %u", i,
                            rect.extent.width, rect.extent.height, extent->width, extent->height);
     }
+    if (maps[0].role == SOFTSH_MAP_SUBLIGHT && info->light->shape != SOFTSH_LIGHT_RECTANGLE)
+        return UNSUPPORTED("softsh_map[0]::role is SOFTSH_MAP_SUBLIGHT, which is for SOFTSH_LIGHT_RECTANGLE");
     if (extent->width > max_extent.width || extent->height > max_extent.height)
         return softshi_fail(context, SOFTSH_ERROR_LIMIT, "softsh_map is %u x %u, expected at most max_extent, %u x %u",
                             extent->width, extent->height, max_extent.width, max_extent.height);

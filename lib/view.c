@@ -60,7 +60,8 @@ static softsh_result create_sets(softsh_view *v, uint32_t recordings)
 
 static softsh_result create_pipelines(softsh_view *v)
 {
-    const softshi_specialization constants = softshi_settings_specialize(&v->settings, v->normals, v->stats);
+    softshi_specialization constants = softshi_settings_specialize(&v->settings, v->normals, v->stats);
+    constants.values[SS_SPEC_SUBLIGHTS] = v->sublights;
     softsh_result result = softshi_classify_create(v, &constants);
     if (result == SOFTSH_SUCCESS)
         result = softshi_settings_in_packets(&v->settings) ? softshi_contour_create(v, &constants)
@@ -71,6 +72,8 @@ static softsh_result create_pipelines(softsh_view *v)
         result = softshi_hard_create(v, &constants);
     if (result == SOFTSH_SUCCESS && v->settings.filter_passes > 0)
         result = softshi_post_filter_create(v, &constants);
+    if (result == SOFTSH_SUCCESS && v->sublights)
+        result = softshi_combine_create(v, &constants);
     return result;
 }
 
@@ -94,7 +97,8 @@ softsh_result softsh_view_create(softsh_context *context, const softsh_view_info
     v->settings = softshi_settings_resolve(info->settings);
     v->stats = info->stats != 0;
     v->normals = info->normals != 0;
-    softshi_layout_view(v->max_extent, &v->settings, &v->layout);
+    v->sublights = info->sublights != 0;
+    softshi_layout_view(v->max_extent, &v->settings, v->sublights, &v->layout);
     result = check_limits(v);
     if (result == SOFTSH_SUCCESS)
         result = softshi_block_create(context, &v->block, v->layout.buffer_size, v->name, "view scratch");
@@ -127,6 +131,7 @@ void softsh_view_destroy(softsh_view *v)
     softshi_pipeline_destroy(context, &p->interpolate);
     softshi_pipeline_destroy(context, &p->hard);
     softshi_pipeline_destroy(context, &p->filter);
+    softshi_pipeline_destroy(context, &p->combine);
     if (v->pool)
         context->vk.DestroyDescriptorPool(context->device, v->pool, context->allocator);
     softshi_block_destroy(context, &v->block);

@@ -14,7 +14,7 @@ typedef struct softshi_view_pipelines {
     softshi_pipeline classify_pixels; /* or, for techniques that evaluate packets, of blocks of them */
     softshi_pipeline evaluate[SS_LISTS]; /* by what one invocation evaluates */
     softshi_pipeline evaluate_layered;   /* bitmasks of occluders that have more than one layer */
-    softshi_pipeline interpolate, hard, filter;
+    softshi_pipeline interpolate, hard, filter, combine;
 } softshi_view_pipelines;
 
 struct softsh_view {
@@ -23,13 +23,17 @@ struct softsh_view {
     VkExtent2D max_extent;
     VkFormat output_format;
     softsh_settings settings; /* resolved */
-    bool stats, normals;
+    bool stats, normals, sublights;
     softshi_view_layout layout;
     softshi_block block;
     VkDescriptorPool pool;
     VkDescriptorSet *io_sets; /* a ring: one per recording */
     uint32_t io_set_count, next_io_set;
     softshi_view_pipelines pipelines;
+    /* Sub-lights recorded so far, of those before the last one. */
+    uint32_t combined;
+    softshi_sublight combined_last;
+    VkRect2D combined_area;
 };
 
 /* One visibility call, as the techniques see it. */

@@ -63,6 +63,39 @@ static softsh_result check(const softsh_view *v, const softsh_visibility_info *i
     return softshi_check_timestamps(context, info->timestamps);
 }
 
+/* Sub-lights come one after the other; a first one may always begin. */
+static softsh_result check_sublight(const softsh_view *v, const softsh_visibility_info *info, VkRect2D area)
+{
+    const softsh_context *context = v->context;
+    const softshi_sublight *const now = &info->occluders->sublight, *const last = &v->combined_last;
+    const uint32_t index = softshi_sublight_index(now);
+    if (!v->sublights && softshi_sublight_count(now) > 1)
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT,
+                            "softsh_visibility_info::occluders is of a sub-light of %u x %u, but the view was created without "
+                            "sublights",
+                            now->grid[0], now->grid[1]);
+    if (index == 0)
+        return SOFTSH_SUCCESS;
+    if (v->combined == 0)
+        return softshi_fail(context, SOFTSH_ERROR_STATE,
+                            "softsh_visibility_info::occluders is of sub-light (%u, %u) of %u x %u, expected (0, 0) first",
+                            now->cell[0], now->cell[1], now->grid[0], now->grid[1]);
+    if (index != v->combined || !softshi_sublight_same_grid(now, last))
+        return softshi_fail(
+            context, SOFTSH_ERROR_STATE,
+            "softsh_visibility_info::occluders is of sub-light (%u, %u) of %u x %u, expected (%u, %u) of %u x %u",
+            now->cell[0], now->cell[1], now->grid[0], now->grid[1], v->combined % last->grid[0],
+            v->combined / last->grid[0], last->grid[0], last->grid[1]);
+    if (memcmp(&area, &v->combined_area, sizeof area) != 0)
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT,
+                            "softsh_visibility_info::render_area is %d, %d, %u x %u, expected that of the other sub-lights, "
+                            "%d, %d, %u x %u",
+                            area.offset.x, area.offset.y, area.extent.width, area.extent.height,
+                            v->combined_area.offset.x, v->combined_area.offset.y, v->combined_area.extent.width,
+                            v->combined_area.extent.height);
+    return SOFTSH_SUCCESS;
+}
+
 static void fill_frame(const softsh_view *v, const softsh_visibility_info *info, VkRect2D area, ss_frame *frame)
 {
     frame->camera.y = 2.0f / (float)area.extent.width;
@@ -80,6 +113,7 @@ static void fill_frame(const softsh_view *v, const softsh_visibility_info *info,
     frame->quality.x = v->settings.budget;
     frame->quality.y = v->settings.min_level;
     frame->quality.z = area.extent.width * area.extent.height;
+    frame->quality.w = softshi_layout_planes(&v->settings) * frame->quality.z;
 }
 
 static void write_descriptors(const softsh_view *v, VkDescriptorSet set, const softsh_visibility_info *info)
@@ -135,6 +169,9 @@ softsh_result softsh_cmd_compute_visibility(VkCommandBuffer cmd, softsh_view *v,
     softsh_result result = check(v, info, &area);
     if (result != SOFTSH_SUCCESS)
         return result;
+    result = check_sublight(v, info, area);
+    if (result != SOFTSH_SUCCESS)
+        return result;
     const softsh_occluders *o = info->occluders;
     softshi_visibility visibility = {
         .view = v,
@@ -169,6 +206,12 @@ softsh_result softsh_cmd_compute_visibility(VkCommandBuffer cmd, softsh_view *v,
             softshi_evaluate_record(&visibility, 1);
         }
         softshi_post_filter_record(&visibility);
+    }
+    if (v->sublights) {
+        softshi_combine_record(&visibility);
+        v->combined = (softshi_sublight_index(&o->sublight) + 1) % softshi_sublight_count(&o->sublight);
+        v->combined_last = o->sublight;
+        v->combined_area = area;
     }
     if (info->stats_buffer)
         record_stats(&recorder, v, info);

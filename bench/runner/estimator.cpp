@@ -32,7 +32,7 @@ std::vector<size_t> layer_maps(const Case &data, std::optional<uint32_t> limit)
     std::vector<size_t> maps;
     for (size_t i = 0; i < data.maps.size(); i++) {
         if (data.maps[i].role != MapRole::layer)
-            fail("case %s: maps[%zu] has role %s, which the library does not support yet", data.name.c_str(), i,
+            fail("case %s: maps[%zu] has role %s, which this technique does not support", data.name.c_str(), i,
                  map_role_name(data.maps[i].role));
         maps.push_back(i);
     }
@@ -42,6 +42,18 @@ std::vector<size_t> layer_maps(const Case &data, std::optional<uint32_t> limit)
     if (limit)
         maps.resize(*limit);
     return maps;
+}
+
+std::vector<std::vector<size_t>> sublight_maps(const Case &data, std::optional<uint32_t> limit)
+{
+    if (data.maps[0].role != MapRole::sublight)
+        return {layer_maps(data, limit)};
+    if (limit && *limit > 1)
+        fail("setting layers is %u, but case %s has sub-lights of one layer", *limit, data.name.c_str());
+    std::vector<std::vector<size_t>> groups(data.maps.size());
+    for (size_t i = 0; i < data.maps.size(); i++)
+        groups[data.maps[i].cell[0] + data.maps[i].grid[0] * data.maps[i].cell[1]].push_back(i);
+    return groups;
 }
 
 RunTimes timed_run(Estimator &estimator, bool build)

@@ -19,3 +19,5 @@ FloatImage read_output(gpu &g, gpu_image &image);
 
 // Layer maps of a case in order of their index, at most `limit`. Throws Error where there are others.
 std::vector<size_t> layer_maps(const Case &data, std::optional<uint32_t> limit);
+// The same for each sub-light, in the order of evaluation; a light that is not divided is one.
+std::vector<std::vector<size_t>> sublight_maps(const Case &data, std::optional<uint32_t> limit);

@@ -1,6 +1,7 @@
-// The library itself: its occluders and its view for one case.
+// The library itself: its occluders and its view for one case; of each sub-light, or one for all of them.
 #include "estimators.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "error.hpp"
@@ -20,27 +21,36 @@ class LibraryEstimator final : public Estimator
 {
   public:
     LibraryEstimator(gpu &g, DeviceCase &device_case, const Technique &technique, bool stats)
-        : gpu_(g), case_(device_case), library_(g), queries_(g, 2 * query_count),
-          maps_(layer_maps(device_case.data, technique.layers)), output_(make_output(g, device_case.data.camera.depth))
+        : gpu_(g), case_(device_case), library_(g), maps_(sublight_maps(device_case.data, technique.layers)),
+          queries_(g, static_cast<uint32_t>(2 * maps_.size()) * query_count), reuse_(technique.reuse),
+          output_(make_output(g, device_case.data.camera.depth))
     {
         const Case &data = case_.data;
         try {
             softsh_occluders_info occluders{};
             occluders.struct_size = sizeof occluders;
-            occluders.max_extent = {data.maps[maps_[0]].depth.width, data.maps[maps_[0]].depth.height};
-            occluders.max_layers = static_cast<uint32_t>(maps_.size());
+            for (const CaseMap &map : data.maps) {
+                occluders.max_extent.width = std::max(occluders.max_extent.width, map.depth.width);
+                occluders.max_extent.height = std::max(occluders.max_extent.height, map.depth.height);
+            }
+            occluders.max_layers = static_cast<uint32_t>(maps_[0].size());
+            occluders.max_recordings = static_cast<uint32_t>(maps_.size());
             occluders.accel = technique.accel;
-            library_.check(softsh_occluders_create(library_.context, &occluders, &occluders_));
+            occluders_.resize(reuse_ ? 1 : maps_.size());
+            for (softsh_occluders *&o : occluders_)
+                library_.check(softsh_occluders_create(library_.context, &occluders, &o));
             softsh_view_info view{};
             view.struct_size = sizeof view;
             view.max_extent = {data.camera.depth.width, data.camera.depth.height};
             view.output_format = VK_FORMAT_R32_SFLOAT;
             view.settings = technique.automatic ? nullptr : &technique.library;
             view.stats = stats;
+            view.sublights = maps_.size() > 1;
+            view.max_recordings = static_cast<uint32_t>(maps_.size());
             library_.check(softsh_view_create(library_.context, &view, &view_));
             if (stats)
                 check(gpu_,
-                      gpu_buffer_create(&gpu_, sizeof(softsh_stats), VK_BUFFER_USAGE_TRANSFER_DST_BIT, true, &stats_));
+                      gpu_buffer_create(&gpu_, maps_.size() * sizeof(softsh_stats), VK_BUFFER_USAGE_TRANSFER_DST_BIT, true, &stats_));
         } catch (...) {
             release();
             throw;
@@ -54,22 +64,27 @@ class LibraryEstimator final : public Estimator
     RunTimes run(bool build) override
     {
         RunTimes times;
-        softsh_timestamps build_times{}, visibility_times{};
-        for (softsh_timestamps *t : {&build_times, &visibility_times}) {
-            t->struct_size = sizeof *t;
-            t->pool = queries_.pool;
-            t->query_count = query_count;
+        std::vector<softsh_timestamps> stamps(2 * maps_.size());
+        for (size_t i = 0; i < stamps.size(); i++) {
+            stamps[i].struct_size = sizeof stamps[i];
+            stamps[i].pool = queries_.pool;
+            stamps[i].first_query = static_cast<uint32_t>(i) * query_count;
+            stamps[i].query_count = query_count;
         }
-        visibility_times.first_query = query_count;
         const VkCommandBuffer cmd = gpu_begin(&gpu_);
         queries_.reset(cmd);
         gpu_cmd_image_layout(cmd, &output_, VK_IMAGE_LAYOUT_GENERAL);
-        if (build || !built_)
-            record_build(cmd, &build_times);
-        record_visibility(cmd, &visibility_times);
+        for (size_t i = 0; i < maps_.size(); i++) {
+            if (build || !built_ || reuse_)
+                record_build(cmd, i, &stamps[2 * i]);
+            record_visibility(cmd, i, &stamps[2 * i + 1]);
+        }
+        built_ = true;
         check(gpu_, gpu_submit(&gpu_, cmd));
-        collect(build_times, times.build);
-        collect(visibility_times, times.visibility);
+        for (size_t i = 0; i < maps_.size(); i++) {
+            collect(stamps[2 * i], times.build);
+            collect(stamps[2 * i + 1], times.visibility);
+        }
         return times;
     }
     FloatImage visibility() override
@@ -78,36 +93,61 @@ class LibraryEstimator final : public Estimator
     }
     bool stats(softsh_stats &out) override
     {
-        if (stats_.mapped)
-            std::memcpy(&out, stats_.mapped, sizeof out);
-        return stats_.mapped != nullptr;
+        if (!stats_.mapped)
+            return false;
+        std::vector<softsh_stats> all(maps_.size());
+        std::memcpy(all.data(), stats_.mapped, all.size() * sizeof all[0]);
+        out = sum(all);
+        return true;
     }
     MemoryUse memory() const override
     {
         VkMemoryRequirements persistent{}, transient{};
-        softsh_occluders_memory_requirements(occluders_, &persistent);
+        softsh_occluders_memory_requirements(occluders_[0], &persistent);
         softsh_view_memory_requirements(view_, &transient);
-        return {persistent.size, transient.size};
+        return {occluders_.size() * persistent.size, transient.size};
     }
 
   private:
     static constexpr uint32_t query_count = SOFTSH_MAX_PASSES + 1;
 
-    void record_build(VkCommandBuffer cmd, softsh_timestamps *timestamps)
+    // Counts add up; levels built are those of one structure.
+    static softsh_stats sum(const std::vector<softsh_stats> &all)
+    {
+        softsh_stats total = all[0];
+        for (size_t i = 1; i < all.size(); i++)
+            for (uint64_t softsh_stats::*count :
+                 {&softsh_stats::pixels, &softsh_stats::lit, &softsh_stats::umbra, &softsh_stats::active,
+                  &softsh_stats::nodes, &softsh_stats::primitives, &softsh_stats::tiles,
+                  &softsh_stats::undecided_tiles, &softsh_stats::clamped, &softsh_stats::interpolated,
+                  &softsh_stats::packets, &softsh_stats::incoherent, &softsh_stats::diverged, &softsh_stats::visited})
+                total.*count += all[i].*count;
+        return total;
+    }
+    softsh_occluders *occluders(size_t sublight) const
+    {
+        return occluders_[reuse_ ? 0 : sublight];
+    }
+    void record_build(VkCommandBuffer cmd, size_t sublight, softsh_timestamps *timestamps)
     {
         const Case &data = case_.data;
         std::vector<softsh_map> maps;
-        for (size_t i = 0; i < maps_.size(); i++) {
-            const gpu_image &image = case_.maps[maps_[i]];
+        for (size_t i = 0; i < maps_[sublight].size(); i++) {
+            const size_t from = maps_[sublight][i];
+            const gpu_image &image = case_.maps[from];
             softsh_map map{};
             map.struct_size = sizeof map;
-            map.role = SOFTSH_MAP_LAYER;
+            map.role = data.maps[from].role == MapRole::sublight ? SOFTSH_MAP_SUBLIGHT : SOFTSH_MAP_LAYER;
+            if (map.role == SOFTSH_MAP_SUBLIGHT) {
+                std::copy_n(data.maps[from].grid, 2, map.grid);
+                std::copy_n(data.maps[from].cell, 2, map.cell);
+            }
             map.index = static_cast<uint32_t>(i);
             map.view = image.view;
             map.format = image.format;
             map.layout = image.layout;
             map.image_extent = {image.width, image.height};
-            to_library(data.maps[maps_[i]].frustum, map.view_matrix, map.projection);
+            to_library(data.maps[from].frustum, map.view_matrix, map.projection);
             maps.push_back(map);
         }
         const softsh_light light = to_library(data.light);
@@ -117,10 +157,9 @@ class LibraryEstimator final : public Estimator
         info.map_count = static_cast<uint32_t>(maps.size());
         info.maps = maps.data();
         info.timestamps = timestamps;
-        library_.check(softsh_cmd_build_occluders(cmd, occluders_, &info));
-        built_ = true;
+        library_.check(softsh_cmd_build_occluders(cmd, occluders(sublight), &info));
     }
-    void record_visibility(VkCommandBuffer cmd, softsh_timestamps *timestamps)
+    void record_visibility(VkCommandBuffer cmd, size_t sublight, softsh_timestamps *timestamps)
     {
         softsh_camera camera{};
         camera.struct_size = sizeof camera;
@@ -130,11 +169,12 @@ class LibraryEstimator final : public Estimator
         to_library(case_.data.camera.frustum, camera.view_matrix, camera.projection);
         softsh_visibility_info info{};
         info.struct_size = sizeof info;
-        info.occluders = occluders_;
+        info.occluders = occluders(sublight);
         info.camera_count = 1;
         info.cameras = &camera;
         info.visibility = output_.view;
         info.stats_buffer = stats_.buffer;
+        info.stats_offset = sublight * sizeof(softsh_stats);
         info.timestamps = timestamps;
         library_.check(softsh_cmd_compute_visibility(cmd, view_, &info));
     }
@@ -149,7 +189,8 @@ class LibraryEstimator final : public Estimator
     void release()
     {
         softsh_view_destroy(view_);
-        softsh_occluders_destroy(occluders_);
+        for (softsh_occluders *o : occluders_)
+            softsh_occluders_destroy(o);
         gpu_image_destroy(&gpu_, &output_);
         if (stats_.buffer)
             gpu_buffer_destroy(&gpu_, &stats_);
@@ -158,11 +199,12 @@ class LibraryEstimator final : public Estimator
     gpu &gpu_;
     DeviceCase &case_;
     LibraryContext library_;
+    std::vector<std::vector<size_t>> maps_; // layers of each sub-light
     Queries queries_;
-    std::vector<size_t> maps_;
+    bool reuse_;
     gpu_image output_;
     gpu_buffer stats_{};
-    softsh_occluders *occluders_ = nullptr;
+    std::vector<softsh_occluders *> occluders_;
     softsh_view *view_ = nullptr;
     bool built_ = false;
 };

@@ -6,6 +6,43 @@
 #include "error.hpp"
 #include "truth.hpp"
 
+namespace
+{
+
+void add_layers(gpu &g, Rasteriser &rasteriser, const Scene &scene, uint32_t size, uint32_t layers, Case &data)
+{
+    DepthTarget *previous = nullptr;
+    for (uint32_t i = 0; i < layers; i++) {
+        DepthTarget &layer = rasteriser.create_depth_target(size, size);
+        rasteriser.depth(layer, scene.map, scene.origin, previous);
+        previous = &layer;
+        CaseMap map;
+        map.frustum = scene.map;
+        map.depth = read_depth(g, layer.image);
+        map.index = i;
+        data.maps.push_back(std::move(map));
+    }
+}
+
+void add_sublights(gpu &g, Rasteriser &rasteriser, const Scene &scene, uint32_t size, uint32_t grid, Case &data)
+{
+    DepthTarget &target = rasteriser.create_depth_target(size, size);
+    for (uint32_t j = 0; j < grid; j++)
+        for (uint32_t i = 0; i < grid; i++) {
+            CaseMap map;
+            map.frustum = sub_light_frustum(scene, grid, i, j);
+            rasteriser.depth(target, map.frustum, scene.origin);
+            map.depth = read_depth(g, target.image);
+            map.role = MapRole::sublight;
+            map.grid[0] = map.grid[1] = grid;
+            map.cell[0] = i;
+            map.cell[1] = j;
+            data.maps.push_back(std::move(map));
+        }
+}
+
+} // namespace
+
 Case render_case(gpu &g, const Scene &scene, const SceneCaseOptions &options, GBufferPixels *pixels)
 {
     Case data;
@@ -27,17 +64,10 @@ Case render_case(gpu &g, const Scene &scene, const SceneCaseOptions &options, GB
     }
 
     const uint32_t size = options.map_size ? options.map_size : scene.map_size;
-    DepthTarget *previous = nullptr;
-    for (uint32_t i = 0; i < options.layers; i++) {
-        DepthTarget &layer = rasteriser.create_depth_target(size, size);
-        rasteriser.depth(layer, scene.map, scene.origin, previous);
-        previous = &layer;
-        CaseMap map;
-        map.frustum = scene.map;
-        map.depth = read_depth(g, layer.image);
-        map.index = i;
-        data.maps.push_back(std::move(map));
-    }
+    if (options.sublights)
+        add_sublights(g, rasteriser, scene, size, options.sublights, data);
+    else
+        add_layers(g, rasteriser, scene, size, options.layers, data);
     return data;
 }
 

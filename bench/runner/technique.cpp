@@ -110,6 +110,11 @@ const std::vector<Setting> &setting_list()
              t.accel = static_cast<softsh_accel>(choose(
                  "accel", v, {{"hsm", SOFTSH_ACCEL_HSM}, {"mssm", SOFTSH_ACCEL_MSSM}, {"ysm", SOFTSH_ACCEL_YSM}}));
          }},
+        {"sublights", "resident | reused: a structure for each sub-light, or one that is built again before each",
+         ON_LIBRARY | ON_AUTO,
+         [](Technique &t, const std::string &v) {
+             t.reuse = choose("sublights", v, {{"resident", 0}, {"reused", 1}}) != 0;
+         }},
         {"primitive", "micropatch | micropatch-unextended | microquad | microquad-rectangle", ON_AREA | ON_BITMASK,
          [](Technique &t, const std::string &v) {
              t.library.primitive = static_cast<softsh_primitive>(

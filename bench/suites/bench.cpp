@@ -114,6 +114,7 @@ std::unique_ptr<BenchCase> Bench::load(Scene scene, const SceneCaseOptions &size
     result->scene = std::move(scene);
     SceneCaseOptions chosen = options_.size.value_or(size);
     chosen.layers = size.layers; // what a suite needs, which --size and --map do not say
+    chosen.sublights = size.sublights;
     result->data = render_case(gpu_, *result->scene, chosen);
     if (rays) {
         Progress tracing; // its own line: the first time it can take longer than the suite

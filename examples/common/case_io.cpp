@@ -223,6 +223,26 @@ CaseMap read_map(const Value &value, const fs::path &folder)
     return map;
 }
 
+// One map for each cell of one grid.
+void check_grid(const Value &value, const std::vector<CaseMap> &maps)
+{
+    const uint32_t(&grid)[2] = maps[0].grid;
+    const std::string name = std::to_string(grid[0]) + " x " + std::to_string(grid[1]);
+    if (maps.size() != grid[0] * grid[1])
+        value.expected(std::to_string(grid[0] * grid[1]) + " maps for a grid of " + name + ", not " +
+                       std::to_string(maps.size()));
+    std::vector<bool> found(maps.size());
+    for (size_t i = 0; i < maps.size(); i++) {
+        const Value element = value.element(static_cast<int>(i));
+        if (maps[i].grid[0] != grid[0] || maps[i].grid[1] != grid[1])
+            element.member("grid").expected("the grid of the other maps, " + name);
+        const size_t cell = maps[i].cell[0] + grid[0] * maps[i].cell[1];
+        if (found[cell])
+            element.member("cell").expected("a cell that no other map has");
+        found[cell] = true;
+    }
+}
+
 std::string read_text_file(const std::string &path)
 {
     std::error_code code;
@@ -392,6 +412,8 @@ Case load_case(const std::string &folder)
         if (data.maps[static_cast<size_t>(i)].role != data.maps[0].role)
             maps.element(i).member("role").expected("the same role for all maps");
     }
+    if (data.maps[0].role == MapRole::sublight)
+        check_grid(maps, data.maps);
     const FloatImage &depth = data.camera.depth;
     if (root.has("truth"))
         data.truth = read_image(root.member("truth"), folder, depth.width, depth.height);

@@ -87,9 +87,18 @@ SOFTSH_API softsh_result softsh_cmd_build_occluders(VkCommandBuffer cmd, softsh_
  * TRANSFER_WRITE. Exit: the visibility image in GENERAL, last written in COMPUTE_SHADER / SHADER_WRITE; the stats
  * buffer last written in TRANSFER / TRANSFER_WRITE. The caller's barrier makes them visible to what reads them. Calls
  * with one view, or with one occluders object, are ordered by the library's own barriers on one queue. Clobbers the
- * compute pipeline, compute descriptor sets 0 and 1 and the push constants. */
+ * compute pipeline, compute descriptor sets 0 and 1 and the push constants.
+ * Sub-lights: one call for each, in the order of their cells, u first, with the same render area; the last one writes the
+ * mean, the others leave the visibility image alone. They are recorded in the order of submission, with no other call with
+ * this view in between and its memory left alone. Occluders may be one object for each sub-light, or one for all of
+ * them, built again before each call. */
 SOFTSH_API softsh_result softsh_cmd_compute_visibility(VkCommandBuffer cmd, softsh_view *view,
                                                        const softsh_visibility_info *info);
+
+/* The part of a rectangular light that belongs to a cell of a grid, as a light: for the frustum of a sub-light's map.
+ * `out->struct_size` is set by the caller; what is not the rectangle's is copied. */
+SOFTSH_API softsh_result softsh_sublight_create(const softsh_light *light, const uint32_t grid[2],
+                                                const uint32_t cell[2], softsh_light *out);
 
 /* Matrices for a square map of a rectangular light looking along its normal (half_u x half_v, or the other way if
  * `target` lies behind): the frustum's centre is `behind` world units behind the light's centre (0: on it) and it

@@ -39,6 +39,8 @@ extern "C" {
 
 /* Largest number of layer maps of one light. */
 #define SOFTSH_MAX_LAYERS 4u
+/* Largest number of parts of a light along each of its axes. */
+#define SOFTSH_MAX_SUBLIGHTS 16u
 /* Largest width and height of a map and of a camera image, in texels. */
 #define SOFTSH_MAX_EXTENT 16384u
 /* Most passes one recording function records; the size to give softsh_timestamps arrays. */
@@ -118,7 +120,7 @@ typedef struct softsh_light {
 /* What a map is to its light. */
 typedef enum softsh_map_role {
     SOFTSH_MAP_LAYER = 0,    /* depth-peeled or per-object map; all layers share one projection; occlusion is united */
-    SOFTSH_MAP_SUBLIGHT = 1, /* not supported yet */
+    SOFTSH_MAP_SUBLIGHT = 1, /* map, or one of several layers, of a part of a rectangular light: of one cell of a grid */
     SOFTSH_MAP_FACE = 2,     /* not supported yet */
     SOFTSH_MAP_CASCADE = 3   /* not supported yet */
 } softsh_map_role;
@@ -129,6 +131,8 @@ typedef struct softsh_map {
     uint32_t struct_size;
     softsh_map_role role;
     uint32_t index;   /* layer: 0 to the number of maps - 1, each once */
+    uint32_t grid[2]; /* sublight: parts along half_u and half_v, 1 to SOFTSH_MAX_SUBLIGHTS each; otherwise 0 */
+    uint32_t cell[2]; /* sublight: which of them, (0, 0) at -half_u - half_v; otherwise 0 */
     VkImageView view; /* 2D, one layer, depth aspect (or colour for R32F); usage SAMPLED */
     VkFormat format; /* D16_UNORM, X8_D24_UNORM_PACK32, D24_UNORM_S8_UINT, D32_SFLOAT, D32_SFLOAT_S8_UINT, R32_SFLOAT */
     VkImageLayout layout;    /* during the build: SHADER_READ_ONLY_OPTIMAL, GENERAL or, for depth formats,
@@ -168,9 +172,9 @@ typedef struct softsh_occluders_info {
 
 typedef struct softsh_build_info {
     uint32_t struct_size;
-    const softsh_light *light;
+    const softsh_light *light; /* all of it, also for the maps of a sub-light */
     uint32_t map_count;
-    const softsh_map *maps;
+    const softsh_map *maps; /* all layers, or all of one sub-light, in any order */
     struct softsh_timestamps *timestamps; /* may be NULL */
 } softsh_build_info;
 
@@ -183,6 +187,7 @@ typedef struct softsh_view_info {
     uint32_t max_recordings; /* the last so many visibility calls may be pending or submitted again; 0 means 16, at most
                                 1024 */
     uint32_t normals;        /* nonzero: this view's cameras come with normals */
+    uint32_t sublights;      /* nonzero: can combine sub-lights; 8 bytes of memory a pixel */
     uint32_t max_views;      /* 0 or 1; more is not supported yet */
     softsh_memory_mode memory_mode;
     const char *name; /* debug name; copied; may be NULL */

@@ -21,6 +21,10 @@ void softshi_interpolate_record(const softshi_visibility *visibility);
 softsh_result softshi_post_filter_create(softsh_view *view, const softshi_specialization *constants);
 void softshi_post_filter_record(const softshi_visibility *visibility);
 
+/* Adds what this sub-light shows to what the earlier ones did; the last one writes the mean. */
+softsh_result softshi_combine_create(softsh_view *view, const softshi_specialization *constants);
+void softshi_combine_record(const softshi_visibility *visibility);
+
 softsh_result softshi_hard_create(softsh_view *view, const softshi_specialization *constants);
 void softshi_hard_record(const softshi_visibility *visibility);
 

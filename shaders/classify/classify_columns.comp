@@ -23,7 +23,7 @@ void main()
     for (int y = 0; y < SS_TILE_Y; y++) {
         const ivec2 pixel = frame.area.xy + min(first + ivec2(0, y), end);
         const float d = texelFetch(camera_depth, pixel, 0).x;
-        imageStore(visibility_image, pixel, vec4(1.0));
+        ss_write_visibility(pixel - frame.area.xy, 1.0);
         receiver[y] = ss_is_receiver(d);
         depth[y] = receiver[y] ? clamp(d, 0.0, 1.0) : frame.camera.x;
     }

@@ -22,6 +22,22 @@ layout(set = SS_SET_IO, binding = SS_BIND_TILES, std430) buffer ss_tiles_buffer
     uint tiles[];
 };
 
+layout(set = SS_SET_IO, binding = SS_BIND_FILTER, std430) buffer ss_filter_buffer
+{
+    float filter_values[];
+};
+
+// Planes of a value per pixel: what passes keep for each other (ss_filter_values.glsl), then two of sub-lights.
+uint ss_filter_plane()
+{
+    return frame.quality.z;
+}
+
+uint ss_filter_index(ivec2 pixel)
+{
+    return uint(pixel.y * frame.area.z + pixel.x);
+}
+
 // Where entries of the tiles buffer's parts are; SS_TILE_WORDS says what they are.
 uint ss_undecided_slot(uint i)
 {
@@ -64,9 +80,23 @@ ivec2 ss_tile_pixel(uint tile, uint lane)
            ivec2(lane % SS_TILE_X, lane / SS_TILE_X);
 }
 
+// What this sub-light shows, and the sum over those before it.
+uint ss_sublight_index(ivec2 pixel)
+{
+    return frame.quality.w + ss_filter_index(pixel);
+}
+
+uint ss_sum_index(ivec2 pixel)
+{
+    return frame.quality.w + ss_filter_plane() + ss_filter_index(pixel);
+}
+
 void ss_write_visibility(ivec2 pixel, float visible)
 {
-    imageStore(visibility_image, frame.area.xy + pixel, vec4(visible));
+    if (SS_SUBLIGHTS)
+        filter_values[ss_sublight_index(pixel)] = visible;
+    else
+        imageStore(visibility_image, frame.area.xy + pixel, vec4(visible));
 }
 
 #endif

@@ -14,6 +14,7 @@ layout(constant_id = SS_SPEC_FILTER) const bool SS_FILTER = false;
 layout(constant_id = SS_SPEC_NORMALS) const bool SS_NORMALS = false;
 layout(constant_id = SS_SPEC_LAYERED) const bool SS_LAYERED = true;
 layout(constant_id = SS_SPEC_SPARSE) const bool SS_SPARSE = false;
+layout(constant_id = SS_SPEC_SUBLIGHTS) const bool SS_SUBLIGHTS = false;
 layout(constant_id = SS_SPEC_PACKET) const int SS_PACKET = 1;
 layout(constant_id = SS_SPEC_BLOCK) const int SS_BLOCK = 4;
 const uint SS_BLOCK_ROW = (SS_TILE_X + SS_BLOCK - 1) / SS_BLOCK; // blocks in a row of a tile; the last may stick out of it

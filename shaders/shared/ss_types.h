@@ -69,7 +69,8 @@ typedef struct ss_ivec4 {
 #define SS_SPEC_PACKET 12  /* pixels a side of a packet that one invocation evaluates: 1 to 4 */
 #define SS_SPEC_BLOCK 13   /* pixels a side of the blocks that are classified: 3 or 4 */
 #define SS_SPEC_SPLIT 14   /* 1: 4 x 4 packets that are not of one contour go on as 2 x 2 ones, before single pixels */
-#define SS_SPEC_COUNT 15
+#define SS_SPEC_SUBLIGHTS 15 /* 1: visibility goes to a plane of its own, to be combined */
+#define SS_SPEC_COUNT 16
 
 #define SS_PRIMITIVE_PATCH 0
 #define SS_PRIMITIVE_PATCH_EXTENDED 1
@@ -149,7 +150,7 @@ SS_STRUCT(ss_frame)
     SS_VEC4 bias;          /* override in world units; unused */
     SS_IVEC4 area;         /* render area: x, y, width, height */
     SS_UVEC4 tiles;        /* tiles in x, y, their number; unused */
-    SS_UVEC4 quality;      /* budget (0: none), least level, pixels in the render area; unused */
+    SS_UVEC4 quality;      /* budget (0: none), least level, pixels in the render area, first value of sub-lights */
     SS_UVEC4 flags[2];     /* [0].x: SS_FLAG_*; [1] unused */
     SS_VEC4 cost;          /* Yang et al. 2009, equation 6: Q_n, Q_e, Q_v; unused */
     SS_UVEC4 lists;        /* where they begin in the tiles buffer: single pixels, large and small packets, interpolated */
@@ -204,6 +205,14 @@ SS_STRUCT(ss_evaluate_push)
     SS_UINT unused[2];
 }
 SS_STRUCT_END(ss_evaluate_push);
+
+SS_STRUCT(ss_combine_push)
+{
+    SS_UINT first; /* 1: nothing was combined yet */
+    SS_UINT count; /* of sub-lights, with the last one: write their mean; else 0 */
+    SS_UINT unused[2];
+}
+SS_STRUCT_END(ss_combine_push);
 
 SS_STRUCT(ss_filter_push)
 {

@@ -334,7 +334,8 @@ static void map_errors(void **state)
     BAD(BUILD, in.build.map_count = UINT32_MAX, LIMIT, "softsh_build_info::map_count");
     BAD(BUILD, in.maps[0].struct_size = 0, INVALID, "softsh_map[0]::struct_size");
     BAD(BUILD, in.maps[0].role = (softsh_map_role)4, INVALID, "softsh_map[0]::role");
-    BAD(BUILD, in.maps[0].role = SOFTSH_MAP_SUBLIGHT, UNSUPPORTED, "softsh_map[0]::role");
+    BAD(BUILD, in.maps[0].grid[1] = 1, INVALID, "softsh_map[0]::grid");
+    BAD(BUILD, in.maps[0].cell[0] = 1, INVALID, "::cell");
     BAD(BUILD, in.maps[0].role = SOFTSH_MAP_FACE, UNSUPPORTED, "softsh_map[0]::role");
     BAD(BUILD, in.maps[0].role = SOFTSH_MAP_CASCADE, UNSUPPORTED, "softsh_map[0]::role");
     BAD(BUILD, in.maps[0].index = 1, INVALID, "softsh_map[0]::index");
@@ -558,6 +559,103 @@ static void memory_errors(void **state)
     with.view = view;
 }
 
+/* Sub-lights: maps of different ones, grids that do not match, calls out of order. */
+static void sublight_errors(void **state)
+{
+    (void)state;
+    scene *s = with.s;
+    scene_inputs valid;
+    softsh_view *const plain = with.view;
+#define SUBLIGHT(map, columns, rows, x, y)                                                                             \
+    (in.maps[map].role = SOFTSH_MAP_SUBLIGHT, in.maps[map].grid[0] = columns, in.maps[map].grid[1] = rows,             \
+     in.maps[map].cell[0] = x, in.maps[map].cell[1] = y)
+    with.lamp = LAMP_RECTANGLE;
+    BAD(BUILD, SUBLIGHT(0, 0, 2, 0, 0), INVALID, "softsh_map[0]::grid is (0, 2)");
+    BAD(BUILD, SUBLIGHT(0, 2, SOFTSH_MAX_SUBLIGHTS + 1, 0, 0), INVALID, "softsh_map[0]::grid");
+    BAD(BUILD, SUBLIGHT(0, UINT32_MAX, UINT32_MAX, 0, 0), INVALID, "softsh_map[0]::grid");
+    BAD(BUILD, SUBLIGHT(0, 2, 3, 2, 0), INVALID, "softsh_map[0]::cell is (2, 0), expected less than ::grid, (2, 3)");
+    BAD(BUILD, SUBLIGHT(0, 2, 3, 0, UINT32_MAX), INVALID, "softsh_map[0]::cell");
+    with.lamp = LAMP_DIRECTIONAL;
+    BAD(BUILD, SUBLIGHT(0, 2, 2, 0, 0), UNSUPPORTED, "SOFTSH_MAP_SUBLIGHT");
+    with.lamp = LAMP_RECTANGLE;
+#define TWO(change, words)                                                                                             \
+    do {                                                                                                               \
+        scene_inputs in;                                                                                               \
+        scene_fill(s, LAMP_RECTANGLE, 2, &in);                                                                         \
+        SUBLIGHT(0, 2, 2, 0, 0);                                                                                       \
+        SUBLIGHT(1, 2, 2, 0, 0);                                                                                       \
+        change;                                                                                                        \
+        EXPECT(softsh_cmd_build_occluders(with.cmd, with.occluders, &in.build), INVALID, words);                       \
+    } while (0)
+    TWO(SUBLIGHT(1, 2, 2, 1, 0), "softsh_map[1] is of sub-light (1, 0) of 2 x 2, but softsh_map[0] of (0, 0) of 2 x 2");
+    TWO(SUBLIGHT(1, 2, 3, 0, 0), "softsh_map[1] is of sub-light (0, 0) of 2 x 3, but softsh_map[0] of (0, 0) of 2 x 2");
+    TWO((in.maps[1].role = SOFTSH_MAP_LAYER, in.maps[1].grid[0] = in.maps[1].grid[1] = 0), "softsh_map[1]::role");
+#undef TWO
+
+    /* One object for each of these. */
+    static const uint32_t cells[][4] = {{2, 2, 0, 0}, {2, 2, 1, 0}, {2, 2, 0, 1}, {3, 2, 1, 0}};
+    softsh_occluders *parts[4];
+    for (size_t i = 0; i < 4; i++) {
+        scene_inputs in;
+        scene_fill(s, LAMP_RECTANGLE, 1, &in);
+        SUBLIGHT(0, cells[i][0], cells[i][1], cells[i][2], cells[i][3]);
+        parts[i] = scene_occluders(with.context, &in);
+        assert_int_equal(softsh_cmd_build_occluders(with.cmd, parts[i], &in.build), SOFTSH_SUCCESS);
+    }
+    BAD(VISIBILITY, in.visibility.occluders = parts[0], INVALID, "a sub-light of 2 x 2, but the view");
+    scene_fill(s, LAMP_RECTANGLE, 1, &valid);
+    valid.view.sublights = 1;
+    with.view = scene_view(with.context, &valid);
+    BAD(VISIBILITY, in.visibility.occluders = parts[1], STATE, "sub-light (1, 0) of 2 x 2, expected (0, 0) first");
+    valid.visibility.occluders = parts[0];
+    assert_int_equal(softsh_cmd_compute_visibility(with.cmd, with.view, &valid.visibility), SOFTSH_SUCCESS);
+    BAD(VISIBILITY, in.visibility.occluders = parts[2], STATE, "(0, 1) of 2 x 2, expected (1, 0) of 2 x 2");
+    BAD(VISIBILITY, in.visibility.occluders = parts[3], STATE, "(1, 0) of 3 x 2, expected (1, 0) of 2 x 2");
+    BAD(VISIBILITY, in.visibility.occluders = parts[1];
+        in.visibility.render_area = ((VkRect2D){{1, 0}, {3, 3}}), INVALID, "softsh_visibility_info::render_area");
+    valid.visibility.occluders = parts[1];
+    assert_int_equal(softsh_cmd_compute_visibility(with.cmd, with.view, &valid.visibility), SOFTSH_SUCCESS);
+    /* A light that is not divided begins anew. */
+    valid.visibility.occluders = with.occluders;
+    assert_int_equal(softsh_cmd_compute_visibility(with.cmd, with.view, &valid.visibility), SOFTSH_SUCCESS);
+    BAD(VISIBILITY, in.visibility.occluders = parts[2], STATE, "(0, 1) of 2 x 2, expected (0, 0) first");
+
+    assert_true(gpu_submit(&s->g, with.cmd));
+    with.cmd = gpu_begin(&s->g);
+    assert_non_null(with.cmd);
+    softsh_view_destroy(with.view);
+    with.view = plain;
+    for (size_t i = 0; i < 4; i++)
+        softsh_occluders_destroy(parts[i]);
+
+    scene_message_count = 0;
+    softsh_light out = {.struct_size = sizeof out}, small = {.struct_size = 1};
+    const uint32_t grid[2] = {2, 3}, cell[2] = {1, 2}, outside[2] = {1, 3}, none[2] = {2, 0}, many[2] = {17, 1};
+    scene_fill(s, LAMP_RECTANGLE, 1, &valid);
+    assert_int_equal(softsh_sublight_create(&valid.light, grid, cell, &out), SOFTSH_SUCCESS);
+    for (int i = 0; i < 3; i++) {
+        const double u = valid.light.half_u[i], v = valid.light.half_v[i], center = valid.light.center[i];
+        assert_true(fabs(out.half_u[i] - u / 2.0) <= 1e-12 && fabs(out.half_v[i] - v / 3.0) <= 1e-12 &&
+                    fabs(out.center[i] - (center + u / 2.0 + v * 2.0 / 3.0)) <= 1e-12);
+    }
+    assert_int_equal(softsh_sublight_create(NULL, grid, cell, &out), INVALID);
+    assert_int_equal(softsh_sublight_create(&valid.light, NULL, cell, &out), INVALID);
+    assert_int_equal(softsh_sublight_create(&valid.light, grid, NULL, &out), INVALID);
+    assert_int_equal(softsh_sublight_create(&valid.light, grid, cell, NULL), INVALID);
+    assert_int_equal(softsh_sublight_create(&valid.light, grid, cell, &small), INVALID);
+    assert_int_equal(softsh_sublight_create(&valid.light, grid, outside, &out), INVALID);
+    assert_int_equal(softsh_sublight_create(&valid.light, none, cell, &out), INVALID);
+    assert_int_equal(softsh_sublight_create(&valid.light, many, cell, &out), INVALID);
+    valid.light.center[1] = NAN;
+    assert_int_equal(softsh_sublight_create(&valid.light, grid, cell, &out), INVALID);
+    valid.light.shape = SOFTSH_LIGHT_DIRECTIONAL;
+    assert_int_equal(softsh_sublight_create(&valid.light, grid, cell, &out), UNSUPPORTED);
+    valid.light.shape = (softsh_light_shape)9;
+    assert_int_equal(softsh_sublight_create(&valid.light, grid, cell, &out), INVALID);
+    assert_int_equal(scene_message_count, 0);
+#undef SUBLIGHT
+}
+
 static void frustum_errors(void **state)
 {
     (void)state;
@@ -643,7 +741,7 @@ int main(void)
         cmocka_unit_test(requirements_errors), cmocka_unit_test(occluders_errors), cmocka_unit_test(view_errors),
         cmocka_unit_test(light_errors),        cmocka_unit_test(map_errors),       cmocka_unit_test(matrix_errors),
         cmocka_unit_test(visibility_errors),   cmocka_unit_test(mismatches),       cmocka_unit_test(memory_errors),
-        cmocka_unit_test(frustum_errors),      cmocka_unit_test(objects_survive),
+        cmocka_unit_test(sublight_errors),     cmocka_unit_test(frustum_errors),   cmocka_unit_test(objects_survive),
     };
     return cmocka_run_group_tests_name("errors", tests, setup, teardown);
 }

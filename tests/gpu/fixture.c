@@ -197,6 +197,9 @@ void lamp_create(const lamp_info *info, lamp *out)
                info->layout ? info->layout : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, &out->images[i]);
         map->struct_size = sizeof *map;
         map->index = layer;
+        map->role = info->grid[0] ? SOFTSH_MAP_SUBLIGHT : SOFTSH_MAP_LAYER;
+        memcpy(map->grid, info->grid, sizeof map->grid);
+        memcpy(map->cell, info->cell, sizeof map->cell);
         map->view = out->images[i].view;
         map->format = format;
         map->layout = out->images[i].layout;
@@ -212,11 +215,16 @@ void lamp_create(const lamp_info *info, lamp *out)
     require_gpu(gpu_submit(&device, cmd));
 }
 
-void lamp_record(lamp *l, VkCommandBuffer cmd)
+static void lamp_record_into(lamp *l, softsh_occluders *occluders, VkCommandBuffer cmd)
 {
     const softsh_build_info build = {
         .struct_size = sizeof build, .light = &l->light, .map_count = l->layer_count, .maps = l->maps};
-    require(softsh_cmd_build_occluders(cmd, l->occluders, &build));
+    require(softsh_cmd_build_occluders(cmd, occluders, &build));
+}
+
+void lamp_record(lamp *l, VkCommandBuffer cmd)
+{
+    lamp_record_into(l, l->occluders, cmd);
 }
 
 void lamp_destroy(lamp *l)
@@ -325,6 +333,7 @@ void sight_create(const sight_info *info, sight *out)
         .settings = &settings,
         .stats = 1,
         .normals = info->normals,
+        .sublights = info->sublights,
         .name = "test",
     };
 
@@ -376,8 +385,9 @@ static float texel_value(VkFormat format, const void *data, size_t i)
     }
 }
 
-void sight_run(sight *s, const lamp *l, const eye *e, const sight_options *options, float *visibility,
-               softsh_stats *stats)
+/* One submission: fills the image with the guard if told to, builds `built` if there is one, and runs. */
+static void run_once(sight *s, bool clear, lamp *built, softsh_occluders *occluders, const eye *e,
+                     const sight_options *options, float *visibility, softsh_stats *stats)
 {
     const VkDeviceSize stats_offset = (VkDeviceSize)s->image.width * s->image.height * sizeof(float);
     const VkRect2D area = {{(int32_t)e->place.x, (int32_t)e->place.y}, {e->place.width, e->place.height}};
@@ -387,7 +397,7 @@ void sight_run(sight *s, const lamp *l, const eye *e, const sight_options *optio
                                     .imageExtent = {s->image.width, s->image.height, 1}};
     const softsh_visibility_info info = {
         .struct_size = sizeof info,
-        .occluders = l->occluders,
+        .occluders = occluders,
         .camera_count = 1,
         .cameras = &e->camera,
         .render_area = area,
@@ -404,10 +414,14 @@ void sight_run(sight *s, const lamp *l, const eye *e, const sight_options *optio
 
     assert_int_equal(s->image.width, e->place.image_width);
     assert_int_equal(s->image.height, e->place.image_height);
-    s->image.layout = VK_IMAGE_LAYOUT_UNDEFINED;
     VkCommandBuffer cmd = gpu_begin(&device);
-    gpu_cmd_image_layout(cmd, &s->image, VK_IMAGE_LAYOUT_GENERAL);
-    vkCmdClearColorImage(cmd, s->image.image, VK_IMAGE_LAYOUT_GENERAL, &guard, 1, &all);
+    if (built)
+        lamp_record_into(built, occluders, cmd);
+    if (clear) {
+        s->image.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+        gpu_cmd_image_layout(cmd, &s->image, VK_IMAGE_LAYOUT_GENERAL);
+        vkCmdClearColorImage(cmd, s->image.image, VK_IMAGE_LAYOUT_GENERAL, &guard, 1, &all);
+    }
     gpu_cmd_image_layout(cmd, &s->image, VK_IMAGE_LAYOUT_GENERAL);
     require(softsh_cmd_compute_visibility(cmd, s->view, &info));
     gpu_cmd_image_layout(cmd, &s->image, VK_IMAGE_LAYOUT_GENERAL);
@@ -427,4 +441,16 @@ void sight_run(sight *s, const lamp *l, const eye *e, const sight_options *optio
         }
     if (stats)
         memcpy(stats, (const char *)s->staging.mapped + stats_offset, sizeof *stats);
+}
+
+void sight_run(sight *s, const lamp *l, const eye *e, const sight_options *options, float *visibility,
+               softsh_stats *stats)
+{
+    run_once(s, true, NULL, l->occluders, e, options, visibility, stats);
+}
+
+void sight_run_all(sight *s, lamp *lamps, uint32_t count, bool rebuilt, const eye *e, float *const *visibility)
+{
+    for (uint32_t i = 0; i < count; i++)
+        run_once(s, i == 0, rebuilt ? &lamps[i] : NULL, lamps[rebuilt ? 0 : i].occluders, e, NULL, visibility[i], NULL);
 }

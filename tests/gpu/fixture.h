@@ -57,6 +57,7 @@ typedef struct lamp_info {
     bool reverse_order;    /* hand the last layer over first */
     VkImageLayout layout;  /* VK_IMAGE_LAYOUT_UNDEFINED: SHADER_READ_ONLY_OPTIMAL */
     VkExtent2D max_extent; /* zero: the map's */
+    uint32_t grid[2], cell[2]; /* of a sub-light; zero: layers of all of the light */
     softsh_accel accel;
     uint32_t ysm_join;
 } lamp_info;
@@ -103,7 +104,7 @@ typedef struct sight_info {
     softsh_settings settings; /* struct_size is filled in */
     VkFormat format;          /* VK_FORMAT_UNDEFINED: R32_SFLOAT */
     uint32_t width, height;   /* of the visibility image */
-    bool normals;
+    bool normals, sublights;
 } sight_info;
 
 /* A view and the image it writes to. */
@@ -125,5 +126,8 @@ typedef struct sight_options {
  * `options` and `stats` may be NULL. */
 void sight_run(sight *s, const lamp *l, const eye *e, const sight_options *options, float *visibility,
                softsh_stats *stats);
+/* A call for each of several lamps, one after the other; `visibility` gets what the image holds after each of them. If
+ * `rebuilt`, only the first lamp's structure is used, built for each lamp before its call. */
+void sight_run_all(sight *s, lamp *lamps, uint32_t count, bool rebuilt, const eye *e, float *const *visibility);
 
 #endif

@@ -56,6 +56,21 @@ broken 's/"depth_convention":[^,]*,/"depth_convention": "sideways",/'
 expect 1 "case.json depth_convention" "$eval" bad
 broken 's/"role":[^,]*,/"role": "face",/'
 expect 1 "face" "$eval" bad --repeat 0
+sublight() { # the two maps as parts of the light
+    broken 's/"role": "layer", "index": \([01]\)/"role": "sublight", "grid": '"$1"', "cell": '"$2"'/'
+}
+sublight '[2, 1]' '[\1, 0]'
+"$eval" bad --repeat 0 >/dev/null
+expect 1 "role sublight" "$eval" bad --technique pcss
+expect 1 "layers sub-lights" "$eval" bad --set layers=2
+sublight '[2, 3]' '[\1, 0]'
+expect 1 "maps 6 2 x 3 2" "$eval" bad
+sublight '[2, 1]' '[0, 0]'
+expect 1 "cell" "$eval" bad
+sublight '[2, 1]' '[2, 0]'
+expect 1 "cell" "$eval" bad
+sublight '[\12, 1]' '[0, 0]'
+expect 1 "grid" "$eval" bad
 broken 's/"width":/"breadth":/'
 expect 1 "case.json width" "$eval" bad
 broken 's/{/[/'
