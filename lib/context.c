@@ -136,6 +136,7 @@ static softsh_result initialize(softsh_context *context, const softsh_context_in
                                               .pNext = &maintenance};
     context->vk.GetPhysicalDeviceProperties2(info->physical_device, &properties);
     context->limits = properties.properties.limits;
+    context->software = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
     context->max_allocation = maintenance.maxMemoryAllocationSize;
     context->vk.GetPhysicalDeviceMemoryProperties(info->physical_device, &context->memory);
     const VkResult result = create_layouts(context);

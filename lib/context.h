@@ -2,6 +2,8 @@
 #ifndef SOFTSHI_CONTEXT_H
 #define SOFTSHI_CONTEXT_H
 
+#include <stdbool.h>
+
 #include <softshadow/softshadow.h>
 
 #include "vulkan/functions.h"
@@ -16,6 +18,7 @@ struct softsh_context {
     softsh_message_fn message;
     void *message_user;
     VkPhysicalDeviceLimits limits;
+    bool software; /* a CPU takes the GPU's place */
     VkDeviceSize max_allocation; /* maxMemoryAllocationSize */
     VkPhysicalDeviceMemoryProperties memory;
     VkDescriptorSetLayout set_layouts[2]; /* SS_SET_OCCLUDERS, SS_SET_IO */

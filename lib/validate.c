@@ -111,8 +111,17 @@ softsh_result softshi_check_settings(const softsh_context *context, const softsh
         return INVALID("softsh_settings::budget is %u, expected at most 4096", s->budget);
     if (s->min_level > 13)
         return INVALID("softsh_settings::min_level is %u, expected at most 13", s->min_level);
-    if ((unsigned)s->packet > SOFTSH_PACKET_4X4)
+    if ((unsigned)s->packet > SOFTSH_PACKET_ADAPTIVE)
         return INVALID("softsh_settings::packet is %d, expected a softsh_packet", (int)s->packet);
+    const struct {
+        const char *name;
+        float value;
+    } costs[] = {
+        {"node", s->packet_cost.node}, {"edge", s->packet_cost.edge}, {"projection", s->packet_cost.projection}};
+    for (int i = 0; i < 3; i++)
+        if (!(costs[i].value >= 0.0f && costs[i].value <= 1e6f))
+            return INVALID("softsh_settings::packet_cost.%s is %g, expected 0 to 1e6", costs[i].name,
+                           (double)costs[i].value);
     if (s->filter_passes > 16)
         return INVALID("softsh_settings::filter_passes is %u, expected at most 16", s->filter_passes);
     return SOFTSH_SUCCESS;

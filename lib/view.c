@@ -94,7 +94,7 @@ softsh_result softsh_view_create(softsh_context *context, const softsh_view_info
     snprintf(v->name, sizeof v->name, "%s", info->name ? info->name : "softshadow");
     v->max_extent = info->max_extent;
     v->output_format = info->output_format;
-    v->settings = softshi_settings_resolve(info->settings);
+    v->settings = softshi_settings_resolve(info->settings, context->software);
     v->stats = info->stats != 0;
     v->normals = info->normals != 0;
     v->sublights = info->sublights != 0;

@@ -109,7 +109,8 @@ static void fill_frame(const softsh_view *v, const softsh_visibility_info *info,
                          (info->occluders->light.disc ? SS_FLAG_DISC : 0u) |
                          (info->override_bias ? SS_FLAG_OVERRIDE_BIAS : 0u);
     softshi_layout_lists(&v->settings, frame->tiles.z, &frame->lists);
-    frame->cost = (ss_vec4){1.0f, 2.0f, 1.0f, 0.0f};
+    const softsh_packet_cost *cost = &v->settings.packet_cost;
+    frame->cost = (ss_vec4){cost->node, cost->edge, cost->projection, 0.0f};
     frame->quality.x = v->settings.budget;
     frame->quality.y = v->settings.min_level;
     frame->quality.z = area.extent.width * area.extent.height;

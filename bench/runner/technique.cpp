@@ -1,6 +1,7 @@
 // Technique names and settings, as the command lines of the tools take them.
 #include "technique.hpp"
 
+#include <cstdio>
 #include <cstdlib>
 #include <functional>
 
@@ -143,14 +144,21 @@ const std::vector<Setting> &setting_list()
          [](Technique &t, const std::string &v) { t.library.min_level = number("level", v, 0, 13); }},
         {"hierarchy", "on | off: prune kernels and classify", ON_LIBRARY,
          [](Technique &t, const std::string &v) { t.library.no_hierarchy = !choose("hierarchy", v, on_off); }},
-        {"packet", "1x1 | 2x2 | 3x3 | 4x4 | auto: pixels that share a search for contours", ON_CONTOUR,
+        {"packet", "1x1 | 2x2 | 3x3 | 4x4 | adaptive: pixels that share a search for contours", ON_CONTOUR,
          [](Technique &t, const std::string &v) {
              t.library.packet = static_cast<softsh_packet>(choose("packet", v,
                                                                   {{"1x1", SOFTSH_PACKET_1X1},
                                                                    {"2x2", SOFTSH_PACKET_2X2},
                                                                    {"3x3", SOFTSH_PACKET_3X3},
                                                                    {"4x4", SOFTSH_PACKET_4X4},
-                                                                   {"auto", SOFTSH_PACKET_DEFAULT}}));
+                                                                   {"adaptive", SOFTSH_PACKET_ADAPTIVE}}));
+         }},
+        {"cost", "N,E,P: relative costs of a sample, an edge and its projection, for packets", ON_CONTOUR,
+         [](Technique &t, const std::string &v) {
+             softsh_packet_cost &cost = t.library.packet_cost;
+             char rest = 0;
+             if (std::sscanf(v.c_str(), "%f,%f,%f%c", &cost.node, &cost.edge, &cost.projection, &rest) != 3)
+                 fail("setting cost is \"%s\", expected three numbers with commas", v.c_str());
          }},
         {"sparse", "on | off: interpolate pixels between others", ON_LIBRARY,
          [](Technique &t, const std::string &v) { t.library.sparse = choose("sparse", v, on_off); }},

@@ -12,6 +12,7 @@ const std::vector<Suite> &suites()
         {"build", "time and memory of HSM, YSM and MSSM", run_build},
         {"skip", "what a scene without penumbrae costs against a copy pass", run_skip},
         {"stability", "jumps under sub-texel light motion, and acne on tilted planes", run_stability},
+        {"tune", "what packets cost on this device, for softsh_packet_cost", run_tune},
         {"seeds", "what the papers claim, held against this machine", run_seeds},
     };
     return list;

@@ -20,4 +20,5 @@ void run_budget(Bench &bench);
 void run_build(Bench &bench);
 void run_skip(Bench &bench);
 void run_stability(Bench &bench);
+void run_tune(Bench &bench);
 void run_seeds(Bench &bench);

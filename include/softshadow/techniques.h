@@ -56,12 +56,19 @@ typedef enum softsh_merge {
  * or are not of one contour, are evaluated pixel by pixel. With `sparse`, packets are of every second pixel of 4 x 4,
  * and of what is left of them. No result depends on it but for rounding. */
 typedef enum softsh_packet {
-    SOFTSH_PACKET_DEFAULT = 0, /* 4 x 4, 2 x 2 or single pixels, chosen for each part of the image */
+    SOFTSH_PACKET_DEFAULT = 0, /* what is fast on this kind of device: 4X4 on CPUs, 1X1 elsewhere */
     SOFTSH_PACKET_1X1 = 1,
     SOFTSH_PACKET_2X2 = 2,
     SOFTSH_PACKET_3X3 = 3,
-    SOFTSH_PACKET_4X4 = 4
+    SOFTSH_PACKET_4X4 = 4,
+    SOFTSH_PACKET_ADAPTIVE = 5 /* 4 x 4, 2 x 2 or single pixels, chosen for each part of the image */
 } softsh_packet;
+
+/* Relative costs of a packet's evaluation, equation 6 of Yang et al. 2009: of a sample or block looked at, of an edge of
+ * the contour, of an edge's projection for one pixel. They decide whether a packet pays. */
+typedef struct softsh_packet_cost {
+    float node, edge, projection; /* 0 to 1e6 each; all zero: what was measured on this kind of device */
+} softsh_packet_cost;
 
 typedef struct softsh_settings {
     uint32_t struct_size;
@@ -79,6 +86,7 @@ typedef struct softsh_settings {
                                neighbours differ or lie on other surfaces; interpolate the others. Ignored with
                                filter_passes */
     softsh_packet packet;   /* contour only */
+    softsh_packet_cost packet_cost; /* contour only; `softshadow-bench tune` measures it */
     uint32_t no_hierarchy;  /* nonzero: neither prune kernels nor classify; for comparisons */
 } softsh_settings;
 

@@ -223,6 +223,7 @@ typedef struct softsh_stats {
     uint64_t packets;           /* packets of pixels that evaluation began with; contour only, as the rest */
     uint64_t incoherent;        /* of these, with pixels that did not belong together and were evaluated apart */
     uint64_t diverged;          /* of these, not of one contour: all pixels were evaluated apart */
+    uint64_t edges;             /* edges of contours found, by packets and pixels */
     uint64_t visited;           /* samples and blocks of samples looked at for contours, by packets and pixels */
     uint32_t wide_levels_built; /* MSSM levels of the occluders' last build */
     uint32_t wide_levels_skipped; /* MSSM levels that no kernel of this light and map can ask for */

@@ -6,8 +6,8 @@
 
 #include "vulkan/pipeline.h"
 
-/* Settings with every default filled in; NULL gives the automatic ones. */
-softsh_settings softshi_settings_resolve(const softsh_settings *settings);
+/* Settings with every default filled in, for CPUs (`software`) or GPUs; NULL gives the automatic ones. */
+softsh_settings softshi_settings_resolve(const softsh_settings *settings, bool software);
 
 /* What one invocation of each list's evaluation pass takes. */
 typedef struct softshi_packets {

@@ -301,6 +301,7 @@ void main()
         const uint n = uint(bitCount(done));
         ss_count(SS_STAT_ACTIVE, n);
         ss_count(SS_STAT_PRIMITIVES, edges * n);
+        ss_count(SS_STAT_EDGES, edges);
         ss_count(SS_STAT_CLAMPED, samples.clamped ? n : 0u);
         ss_count(SS_STAT_VISITED, ss_visited);
         ss_count(SS_STAT_PACKETS, ALONE ? 0u : 1u);

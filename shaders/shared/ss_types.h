@@ -180,7 +180,8 @@ SS_STRUCT_END(ss_control);
 #define SS_STAT_PACKETS 10
 #define SS_STAT_INCOHERENT 11
 #define SS_STAT_DIVERGED 12
-#define SS_STAT_VISITED 13
+#define SS_STAT_EDGES 13
+#define SS_STAT_VISITED 14
 
 /* Push constants of the passes that need some. */
 SS_STRUCT(ss_convert_push)

@@ -258,6 +258,10 @@ static void view_errors(void **state)
     BAD(VIEW, in.settings.merge = (softsh_merge)3, INVALID, "softsh_settings::merge");
     BAD(VIEW, in.settings.budget = 4097, INVALID, "softsh_settings::budget");
     BAD(VIEW, in.settings.min_level = 14, INVALID, "softsh_settings::min_level");
+    BAD(VIEW, in.settings.packet = (softsh_packet)6, INVALID, "softsh_settings::packet");
+    BAD(VIEW, in.settings.packet_cost.node = -1.0f, INVALID, "softsh_settings::packet_cost.node");
+    BAD(VIEW, in.settings.packet_cost.edge = 2e6f, INVALID, "softsh_settings::packet_cost.edge");
+    BAD(VIEW, in.settings.packet_cost.projection = NAN, INVALID, "softsh_settings::packet_cost.projection");
     BAD(VIEW, in.settings.filter_passes = 17, INVALID, "softsh_settings::filter_passes");
     scene_inputs valid;
     scene_fill(with.s, LAMP_RECTANGLE, 1, &valid);

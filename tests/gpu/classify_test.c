@@ -242,7 +242,8 @@ static void compare(const stage *s, views *v, bool normals, tally *t)
     check_stats(&stats, without, WIDTH, HEIGHT);
     for (uint32_t i = 0; i < PIXELS; i++)
         for (int k = 0; k < 3; k++)
-            if (with[k][i] != without[i])
+            /* The same to the bit on the software driver; pipelines may be rounded apart elsewhere. */
+            if (fabsf(with[k][i] - without[i]) > 1e-6f)
                 check_difference(s, &v->settings, normals, i, with[k][i], without[i], t);
 }
 
