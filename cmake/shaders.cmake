@@ -6,12 +6,14 @@ set(SOFTSHADOW_SHADERS
     hierarchy/hierarchy_merge
     hierarchy/hierarchy_plan
     hierarchy/hierarchy_widen
+    hierarchy/hierarchy_fold
     classify/classify_columns
     classify/classify_tiles
     classify/classify_pixels
     classify/classify_blocks
     evaluate/bitmask_evaluate
     evaluate/contour_evaluate
+    evaluate/outline_evaluate
     evaluate/interpolate
     evaluate/interpolate_blocks
     evaluate/hard_evaluate

@@ -74,7 +74,8 @@ static softsh_result plan_build(const softsh_occluders *o, const softsh_build_in
     if (result == SOFTSH_SUCCESS)
         result = softshi_light_space_create(context, &light, &plan->maps[0], &plan->light);
     if (result == SOFTSH_SUCCESS)
-        softshi_layout_occluders(plan->extent, info->map_count, o->join_texels, &plan->layout);
+        softshi_layout_occluders(plan->extent, info->map_count, o->join_texels, o->outlines,
+                                 &plan->layout);
     return result;
 }
 
@@ -105,6 +106,12 @@ static void fill_header(const softsh_build_info *info, const build_plan *plan, s
     /* Creation made sure that all of it can be counted in 32 bits. */
     out->strides = (ss_uvec4){(uint32_t)layout->layer_quads, (uint32_t)layout->pyramid_texels,
                               (uint32_t)layout->wide_offset, layout->wide_texels};
+    out->extent.y = (float)layout->layer_fold_words;
+    for (uint32_t i = 0; i <= layout->top; i++) {
+        const uint32_t first = layout->folds[i], words = softshi_level_words(plan->extent.width, i);
+        ss_uvec4 *const two = &out->folds[i / 2];
+        *two = i % 2 == 0 ? (ss_uvec4){first, words, 0, 0} : (ss_uvec4){two->x, two->y, first, words};
+    }
     for (uint32_t i = 0; i <= layout->top; i++)
         out->pyramid[i] = (ss_uvec4){layout->offsets[i], softshi_level_size(plan->extent.width, i), layout->quads[i],
                                      softshi_level_quads(plan->extent.width, i)};

@@ -59,7 +59,7 @@ void softshi_name_object(const softsh_context *context, VkObjectType type, uint6
 static VkResult create_set_layout(softsh_context *context, const VkDescriptorType *types, uint32_t count,
                                   VkDescriptorSetLayout *out)
 {
-    VkDescriptorSetLayoutBinding bindings[SS_IO_BINDINGS];
+    VkDescriptorSetLayoutBinding bindings[SS_OCCLUDER_BINDINGS];
     for (uint32_t i = 0; i < count; i++) {
         bindings[i] = (VkDescriptorSetLayoutBinding){
             .binding = i,
@@ -89,6 +89,8 @@ static VkResult create_layouts(softsh_context *context)
         [SS_BIND_DEPTHS] = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
         [SS_BIND_DEPTH_QUADS] = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
         [SS_BIND_RANGES] = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
+        [SS_BIND_FOLDS] = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
+        [SS_BIND_MADE_FOLDS] = VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER,
     };
     static const VkDescriptorType io[SS_IO_BINDINGS] = {
         [SS_BIND_DEPTH] = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,      [SS_BIND_NORMALS] = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,

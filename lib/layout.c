@@ -20,6 +20,11 @@ uint32_t softshi_level_quads(uint32_t texels, uint32_t level)
     return (softshi_level_size(texels, level) + 3) / 4;
 }
 
+uint32_t softshi_level_words(uint32_t texels, uint32_t level)
+{
+    return (softshi_level_size(texels, level) + 31) / 32;
+}
+
 uint32_t softshi_level_size(uint32_t texels, uint32_t level)
 {
     return (uint32_t)(((uint64_t)texels + (UINT64_C(1) << level) - 1) >> level);
@@ -35,7 +40,8 @@ static uint32_t minimum(uint32_t a, uint32_t b)
     return a < b ? a : b;
 }
 
-void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_texels, softshi_occluder_layout *out)
+void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_texels, bool outlines,
+                              softshi_occluder_layout *out)
 {
     memset(out, 0, sizeof *out);
     const uint32_t side = maximum(extent.width, extent.height);
@@ -50,6 +56,11 @@ void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_
     for (uint32_t i = 0; i <= out->top; i++) {
         out->quads[i] = (uint32_t)out->layer_quads;
         out->layer_quads += (VkDeviceSize)softshi_level_quads(extent.width, i) * softshi_level_size(extent.height, i);
+    }
+    for (uint32_t i = 0; i <= out->top && outlines; i++) {
+        out->folds[i] = (uint32_t)out->layer_fold_words;
+        out->layer_fold_words +=
+            (VkDeviceSize)softshi_level_words(extent.width, i) * softshi_level_size(extent.height, i);
     }
     out->join = out->top;
     if (join_texels > 0) {
@@ -69,6 +80,8 @@ void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_
     out->header = append(&end, sizeof(ss_occluders) + sizeof(ss_plan));
     out->fan_depth = append(&end, out->layer_quads * layers * 4 * sizeof(float));
     out->ranges = append(&end, texels * 2 * sizeof(float));
+    /* Never empty: its views are among the descriptors. */
+    out->fold_bits = append(&end, (outlines ? out->layer_fold_words * layers : 1) * sizeof(uint32_t));
     out->buffer_size = end;
 }
 

@@ -11,12 +11,14 @@ typedef struct softshi_range {
 
 /* Texels of a side at a pyramid level: rounded up. */
 uint32_t softshi_level_size(uint32_t texels, uint32_t level);
+/* Words of a row of bits there. */
+uint32_t softshi_level_words(uint32_t texels, uint32_t level);
 /* Quads of a row of fan depths there. */
 uint32_t softshi_level_quads(uint32_t texels, uint32_t level);
 
 /* One light's structures for maps of `extent`. */
 typedef struct softshi_occluder_layout {
-    softshi_range header, fan_depth, ranges; /* in the buffer */
+    softshi_range header, fan_depth, ranges, fold_bits; /* in the buffer */
     VkDeviceSize buffer_size;
     VkDeviceSize pyramid_texels;     /* of `ranges`, of each layer */
     uint32_t pyramids;               /* one for each layer, and of several one over all; then come the wide levels */
@@ -24,6 +26,8 @@ typedef struct softshi_occluder_layout {
     uint32_t offsets[SS_MAX_LEVELS]; /* first texel of a pyramid level */
     VkDeviceSize layer_quads;        /* of `fan_depth`, four depths each: a layer's levels 0 to top */
     uint32_t quads[SS_MAX_LEVELS];   /* first quad of a level's sampled fan depths */
+    VkDeviceSize layer_fold_words;   /* of `fold_bits`, of each layer; 0 without outlines */
+    uint32_t folds[SS_MAX_LEVELS];   /* first word of a level's bits */
     uint32_t join;                   /* pyramid level the wide part starts from; `top` without one */
     uint32_t wide_levels;            /* 0 without a wide part */
     VkDeviceSize wide_offset;        /* first texel of wide level 1 */
@@ -31,7 +35,8 @@ typedef struct softshi_occluder_layout {
 } softshi_occluder_layout;
 
 /* `join_texels`: the most texels a side of the wide part; 0: no wide part (HSM), UINT32_MAX: an MSSM. */
-void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_texels, softshi_occluder_layout *out);
+void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_texels, bool outlines,
+                              softshi_occluder_layout *out);
 
 /* A view's scratch. */
 typedef struct softshi_view_layout {

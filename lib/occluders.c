@@ -47,7 +47,7 @@ static softsh_result create_sets(softsh_occluders *o, uint32_t recordings)
     const VkDescriptorPoolSize sizes[] = {
         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1 + n},   {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1 + 3 * n},
         {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 2 * n},    {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, n},
-        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 3}, {VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, 2},
+        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 4}, {VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, 3},
     };
     const VkDescriptorPoolCreateInfo pool_info = {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
@@ -110,6 +110,8 @@ static void write_descriptors(const softsh_occluders *o)
         {SS_BIND_DEPTHS, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, NULL, &o->depths},
         {SS_BIND_DEPTH_QUADS, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, NULL, &o->depth_quads},
         {SS_BIND_RANGES, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, NULL, &o->ranges},
+        {SS_BIND_FOLDS, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, NULL, &o->folds},
+        {SS_BIND_MADE_FOLDS, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, NULL, &o->folds},
     };
     VkWriteDescriptorSet writes[SS_OCCLUDER_BINDINGS];
     for (uint32_t i = 0; i < SS_OCCLUDER_BINDINGS; i++)
@@ -134,6 +136,8 @@ static softsh_result finish(softsh_occluders *o)
         result = create_texels(o, &layout->fan_depth, VK_FORMAT_R32G32B32A32_SFLOAT, &o->depth_quads);
     if (result == SOFTSH_SUCCESS)
         result = create_texels(o, &layout->ranges, VK_FORMAT_R32G32_SFLOAT, &o->ranges);
+    if (result == SOFTSH_SUCCESS)
+        result = create_texels(o, &layout->fold_bits, VK_FORMAT_R32_UINT, &o->folds);
     o->block.ready = result == SOFTSH_SUCCESS;
     if (result == SOFTSH_SUCCESS)
         write_descriptors(o);
@@ -163,7 +167,8 @@ softsh_result softsh_occluders_create(softsh_context *context, const softsh_occl
         o->join_texels = 0;
     else if (info->accel == SOFTSH_ACCEL_MSSM)
         o->join_texels = UINT32_MAX;
-    softshi_layout_occluders(o->max_extent, o->max_layers, o->join_texels, &o->layout);
+    o->outlines = info->outlines != 0;
+    softshi_layout_occluders(o->max_extent, o->max_layers, o->join_texels, o->outlines, &o->layout);
     result = check_limits(o);
     if (result == SOFTSH_SUCCESS)
         result = softshi_block_create(context, &o->block, o->layout.buffer_size, o->name, "occluders");
@@ -192,7 +197,7 @@ void softsh_occluders_destroy(softsh_occluders *o)
     softshi_hierarchy_destroy(o);
     if (o->pool)
         context->vk.DestroyDescriptorPool(context->device, o->pool, context->allocator);
-    const VkBufferView texels[] = {o->depths, o->depth_quads, o->ranges};
+    const VkBufferView texels[] = {o->depths, o->depth_quads, o->ranges, o->folds};
     for (size_t i = 0; i < sizeof texels / sizeof *texels; i++)
         if (texels[i])
             context->vk.DestroyBufferView(context->device, texels[i], context->allocator);

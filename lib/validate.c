@@ -113,6 +113,19 @@ softsh_result softshi_check_settings(const softsh_context *context, const softsh
         return INVALID("softsh_settings::min_level is %u, expected at most 13", s->min_level);
     if ((unsigned)s->packet > SOFTSH_PACKET_ADAPTIVE)
         return INVALID("softsh_settings::packet is %d, expected a softsh_packet", (int)s->packet);
+    if (s->outline && (s->technique == SOFTSH_TECHNIQUE_AREA || s->technique == SOFTSH_TECHNIQUE_BITMASK)) {
+        if (s->primitive != SOFTSH_PRIMITIVE_DEFAULT && s->primitive != SOFTSH_PRIMITIVE_MICROQUAD)
+            return INVALID("softsh_settings::outline is set, but primitive is %d, expected SOFTSH_PRIMITIVE_MICROQUAD",
+                           (int)s->primitive);
+        if (s->aggregation == SOFTSH_AGGREGATION_NEAREST)
+            return INVALID("softsh_settings::outline is set, but aggregation is SOFTSH_AGGREGATION_NEAREST, expected "
+                           "SOFTSH_AGGREGATION_SAMPLED");
+        if (s->pattern == SOFTSH_PATTERN_32X32)
+            return UNSUPPORTED("softsh_settings::outline is set, but pattern is SOFTSH_PATTERN_32X32, which it does not "
+                               "support");
+        if (s->filter_passes > 0)
+            return INVALID("softsh_settings::outline is set, but filter_passes is %u, expected 0", s->filter_passes);
+    }
     const struct {
         const char *name;
         float value;

@@ -87,6 +87,9 @@ typedef struct softsh_settings {
                                filter_passes */
     softsh_packet packet;   /* contour only */
     softsh_packet_cost packet_cost; /* contour only; `softshadow-bench tune` measures it */
+    uint32_t outline;       /* nonzero: of microquads that cannot fold, only the outline of all of them is projected; the
+                               result is the same. For area and bitmask, microquads, sampled depth and patterns up to
+                               16 x 16, without filter_passes, on occluders with `outlines`; contour ignores it */
     uint32_t no_hierarchy;  /* nonzero: neither prune kernels nor classify; for comparisons */
 } softsh_settings;
 

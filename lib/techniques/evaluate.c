@@ -7,7 +7,7 @@ static void record_list(const softshi_visibility *visibility, uint32_t round, ui
 {
     const softsh_view *view = visibility->view;
     const softshi_view_pipelines *pipelines = &view->pipelines;
-    const bool layered = visibility->occluders->layered && !softshi_settings_in_packets(&view->settings);
+    const bool layered = visibility->occluders->layered && pipelines->evaluate_layered.handle;
     const ss_evaluate_push push = {.round = round, .stride = stride};
     const softshi_pass evaluate = {
         .pipeline = layered ? &pipelines->evaluate_layered : &pipelines->evaluate[list],

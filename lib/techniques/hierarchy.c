@@ -21,9 +21,11 @@ softsh_result softshi_hierarchy_create(softsh_occluders *o)
         {SOFTSHI_SHADER_HIERARCHY_CONVERT, 0, &p->convert}, {SOFTSHI_SHADER_HIERARCHY_SAMPLE, 0, &p->sample},
         {SOFTSHI_SHADER_HIERARCHY_REDUCE, 0, &p->reduce},   {SOFTSHI_SHADER_HIERARCHY_MERGE, 0, &p->merge},
         {SOFTSHI_SHADER_HIERARCHY_PLAN, 0, &p->plan},       {SOFTSHI_SHADER_HIERARCHY_WIDEN, 1, &p->widen_first},
-        {SOFTSHI_SHADER_HIERARCHY_WIDEN, 0, &p->widen},
+        {SOFTSHI_SHADER_HIERARCHY_WIDEN, 0, &p->widen},     {SOFTSHI_SHADER_HIERARCHY_FOLD, 0, &p->fold},
     };
     for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
+        if (list[i].shader == SOFTSHI_SHADER_HIERARCHY_FOLD && !o->outlines)
+            continue;
         constants.values[SS_SPEC_COUNT] = list[i].from_fan_depth;
         const softsh_result result = softshi_pipeline_create(o->context, list[i].shader, &constants, list[i].pipeline);
         if (result != SOFTSH_SUCCESS)
@@ -36,7 +38,7 @@ void softshi_hierarchy_destroy(softsh_occluders *o)
 {
     softshi_hierarchy_pipelines *p = &o->pipelines;
     softshi_pipeline *const all[] = {&p->convert, &p->sample,      &p->reduce, &p->merge,
-                                     &p->plan,    &p->widen_first, &p->widen};
+                                     &p->plan,    &p->widen_first, &p->widen,  &p->fold};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         softshi_pipeline_destroy(o->context, all[i]);
 }
@@ -73,6 +75,17 @@ void softshi_hierarchy_record_levels(softshi_recorder *recorder, const softsh_oc
                    divide_up(sample_groups, SS_DISPATCH_WIDTH), layers},
     };
     softshi_record_pass(recorder, &sample);
+    if (o->outlines) {
+        const uint32_t fold_groups = divide_up((uint32_t)layout->layer_fold_words, SS_SAMPLE_GROUP);
+        const softshi_pass fold = {
+            .pipeline = &o->pipelines.fold,
+            .reads = SOFTSHI_HEADER | SOFTSHI_FAN_DEPTH,
+            .writes = SOFTSHI_FOLDS,
+            .groups = {fold_groups < SS_DISPATCH_WIDTH ? fold_groups : SS_DISPATCH_WIDTH,
+                       divide_up(fold_groups, SS_DISPATCH_WIDTH), layers},
+        };
+        softshi_record_pass(recorder, &fold);
+    }
     for (uint32_t level = 3; level <= layout->top; level += 2) {
         const ss_level_push push = {.level = level};
         const softshi_pass pass = {

@@ -34,6 +34,8 @@ softsh_settings softshi_settings_resolve(const softsh_settings *settings, bool s
         s.merge = s.technique == SOFTSH_TECHNIQUE_BITMASK ? SOFTSH_MERGE_UNION : SOFTSH_MERGE_MAXIMUM;
     if (s.technique != SOFTSH_TECHNIQUE_BITMASK)
         s.filter_passes = 0;
+    if (s.technique == SOFTSH_TECHNIQUE_CONTOUR)
+        s.outline = 0;
     if (s.filter_passes > 0)
         s.sparse = 0;
     return s;

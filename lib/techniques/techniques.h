@@ -10,6 +10,8 @@ void softshi_classify_record(const softshi_visibility *visibility);
 
 softsh_result softshi_bitmask_create(softsh_view *view, const softshi_specialization *constants);
 
+softsh_result softshi_outline_create(softsh_view *view, const softshi_specialization *constants);
+
 softsh_result softshi_contour_create(softsh_view *view, const softshi_specialization *constants);
 
 /* What is on the lists, by whichever technique the view was created with. Round 1: what interpolation left. */
@@ -29,6 +31,9 @@ softsh_result softshi_hard_create(softsh_view *view, const softshi_specializatio
 void softshi_hard_record(const softshi_visibility *visibility);
 
 /* What every pass that queries the hierarchy reads. */
-enum { SOFTSHI_HIERARCHY = SOFTSHI_HEADER | SOFTSHI_PLAN | SOFTSHI_FAN_DEPTH | SOFTSHI_PYRAMID | SOFTSHI_WIDE };
+enum {
+    SOFTSHI_HIERARCHY =
+        SOFTSHI_HEADER | SOFTSHI_PLAN | SOFTSHI_FAN_DEPTH | SOFTSHI_PYRAMID | SOFTSHI_WIDE | SOFTSHI_FOLDS
+};
 
 #endif

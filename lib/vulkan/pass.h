@@ -15,7 +15,8 @@ typedef enum softshi_resource {
     SOFTSHI_CONTROL = 1 << 6, /* arguments, list lengths, counters */
     SOFTSHI_TILES = 1 << 7,
     SOFTSHI_FILTER = 1 << 8,
-    SOFTSHI_VISIBILITY = 1 << 9
+    SOFTSHI_VISIBILITY = 1 << 9,
+    SOFTSHI_FOLDS = 1 << 10
 } softshi_resource;
 
 typedef struct softshi_recorder {

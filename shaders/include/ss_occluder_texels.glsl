@@ -7,6 +7,8 @@ layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_DEPTHS) uniform textureBuffer d
 layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_DEPTH_QUADS) uniform textureBuffer depth_quads;
 layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_RANGES) uniform textureBuffer ranges;
 
+layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_FOLDS) uniform utextureBuffer folds;
+
 // Four fan depths of a row.
 vec4 ss_depth_quad_at(uint quad)
 {
@@ -22,6 +24,12 @@ float ss_depth_at(uint i)
 vec2 ss_range_at(uint i)
 {
     return texelFetch(ranges, int(i)).xy;
+}
+
+// 32 cells of a row.
+uint ss_folds_at(uint word)
+{
+    return texelFetch(folds, int(word)).x;
 }
 
 #endif

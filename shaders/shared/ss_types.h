@@ -41,7 +41,9 @@ typedef struct ss_ivec4 {
 #define SS_BIND_DEPTHS 4      /* uniform texels, where they are read: single fan depths */
 #define SS_BIND_DEPTH_QUADS 5 /* four of them */
 #define SS_BIND_RANGES 6
-#define SS_OCCLUDER_BINDINGS 7
+#define SS_BIND_FOLDS 7      /* bits of cells that fold, of each layer and level: 32 of a row to a word */
+#define SS_BIND_MADE_FOLDS 8 /* storage texels, where they are written */
+#define SS_OCCLUDER_BINDINGS 9
 
 #define SS_SET_IO 1
 #define SS_BIND_DEPTH 0      /* sampled: the map (build) or the camera's depth */
@@ -83,7 +85,7 @@ typedef struct ss_ivec4 {
 #define SS_TILE_PIXELS 64
 #define SS_EVALUATE_GROUP 64
 #define SS_MAX_LEVELS 16      /* levels of a 32768 texel map */
-#define SS_SAMPLE_GROUP 64    /* quads that a group of hierarchy_sample makes */
+#define SS_SAMPLE_GROUP 64    /* quads that a group of hierarchy_sample makes, words that one of hierarchy_fold makes */
 #define SS_WIDEN_ROWS 4       /* that one invocation of hierarchy_widen makes */
 #define SS_TILE_REFINEMENTS 2 /* of kernels: a third pays for pixels only */
 #define SS_MAX_REFINEMENTS 3
@@ -121,12 +123,12 @@ SS_STRUCT(ss_occluders)
     SS_VEC4 a_inverse;  /* its inverse by rows */
     SS_VEC4 light;      /* U.x, U.y, delta, epsilon */
     SS_VEC4 depths;     /* map's part of eta; tangent (or world size) of a texel in u, v; fan depth of the far plane */
-    SS_VEC4 extent;     /* half side of the square that areas are clipped to; unused */
+    SS_VEC4 extent;     /* half side of the square that areas are clipped to; words of folds per layer; unused */
     SS_UVEC4 size;      /* width, height, layers; place of the pyramid over all layers among the layers' */
     SS_UVEC4 levels;    /* top of the pyramid, join level, wide levels there is room for, their width */
     SS_UVEC4 strides;   /* per layer: quads of fan depths, texels of the pyramid; first texel of wide level 1, texels per
                            wide level */
-    SS_UVEC4 unused[8]; /* ss_plan begins at a multiple of every offset alignment */
+    SS_UVEC4 folds[SS_MAX_LEVELS / 2]; /* two levels each: first word, words in a row */
     /* Per level: first texel and width of its ranges, which level 0 has none of; first quad of its sampled fan depths, quads
      * in a row of them. */
     SS_UVEC4 pyramid[SS_MAX_LEVELS];

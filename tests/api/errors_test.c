@@ -259,6 +259,14 @@ static void view_errors(void **state)
     BAD(VIEW, in.settings.budget = 4097, INVALID, "softsh_settings::budget");
     BAD(VIEW, in.settings.min_level = 14, INVALID, "softsh_settings::min_level");
     BAD(VIEW, in.settings.packet = (softsh_packet)6, INVALID, "softsh_settings::packet");
+    BAD(VIEW, in.settings.technique = SOFTSH_TECHNIQUE_BITMASK; in.settings.outline = 1;
+        in.settings.primitive = SOFTSH_PRIMITIVE_MICROPATCH, INVALID, "softsh_settings::outline");
+    BAD(VIEW, in.settings.technique = SOFTSH_TECHNIQUE_AREA; in.settings.outline = 1;
+        in.settings.aggregation = SOFTSH_AGGREGATION_NEAREST, INVALID, "softsh_settings::outline");
+    BAD(VIEW, in.settings.technique = SOFTSH_TECHNIQUE_BITMASK; in.settings.outline = 1;
+        in.settings.pattern = SOFTSH_PATTERN_32X32, UNSUPPORTED, "softsh_settings::outline");
+    BAD(VIEW, in.settings.technique = SOFTSH_TECHNIQUE_BITMASK; in.settings.outline = 1;
+        in.settings.filter_passes = 1, INVALID, "softsh_settings::outline");
     BAD(VIEW, in.settings.packet_cost.node = -1.0f, INVALID, "softsh_settings::packet_cost.node");
     BAD(VIEW, in.settings.packet_cost.edge = 2e6f, INVALID, "softsh_settings::packet_cost.edge");
     BAD(VIEW, in.settings.packet_cost.projection = NAN, INVALID, "softsh_settings::packet_cost.projection");
@@ -482,6 +490,15 @@ static void mismatches(void **state)
     BAD(VISIBILITY, in.camera.normals = s->normals.view;
         in.camera.normals_layout = VK_IMAGE_LAYOUT_UNDEFINED, INVALID, "softsh_camera::normals_layout");
     softsh_view_destroy(with.view);
+
+    valid.view.normals = 0;
+    valid.settings.technique = SOFTSH_TECHNIQUE_BITMASK;
+    valid.settings.outline = 1;
+    with.view = scene_view(with.context, &valid);
+    BAD(VISIBILITY, (void)in, INVALID, "outlines");
+    softsh_view_destroy(with.view);
+    valid.view.normals = 1;
+    valid.settings.outline = 0;
 
     /* Micropatches cannot do a light whose axes are turned against the map's. */
     valid.settings.primitive = SOFTSH_PRIMITIVE_MICROPATCH;

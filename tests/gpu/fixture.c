@@ -182,6 +182,7 @@ void lamp_create(const lamp_info *info, lamp *out)
         .max_layers = info->layer_count,
         .accel = info->accel,
         .ysm_join = info->ysm_join,
+        .outlines = info->outlines,
         .name = "test",
     };
 

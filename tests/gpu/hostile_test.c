@@ -168,6 +168,7 @@ static void visibilities_are_numbers(void **state)
          .budget = 7},
         {.technique = SOFTSH_TECHNIQUE_BITMASK, .no_hierarchy = 1},
         {.technique = SOFTSH_TECHNIQUE_AREA, .primitive = SOFTSH_PRIMITIVE_MICROQUAD, .min_level = 3},
+        {.technique = SOFTSH_TECHNIQUE_BITMASK, .outline = 1},
         {.technique = SOFTSH_TECHNIQUE_CONTOUR},
         {.technique = SOFTSH_TECHNIQUE_CONTOUR,
          .aggregation = SOFTSH_AGGREGATION_NEAREST,
@@ -194,6 +195,7 @@ static void visibilities_are_numbers(void **state)
                 eye e;
                 random_attack(&seed, width, height, &a);
                 a.eye.normals = normals ? a.normals : NULL;
+                a.lamp.outlines = settings[k].outline != 0;
                 lamp_create(&a.lamp, &l);
                 eye_create(&a.eye, &e);
                 sight_run(&view, &l, &e, &a.options, visibility, &stats);

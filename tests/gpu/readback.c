@@ -47,7 +47,8 @@ void readback_create(const lamp *l, readback *out)
     out->width = header->size.x;
     out->height = header->size.y;
     out->layers = header->size.z;
-    softshi_layout_occluders((VkExtent2D){out->width, out->height}, out->layers, o->join_texels, &layout);
+    softshi_layout_occluders((VkExtent2D){out->width, out->height}, out->layers, o->join_texels, o->outlines,
+                             &layout);
     out->top = layout.top;
     out->join = layout.join;
     out->wide_built = plan->built.x;
@@ -67,6 +68,10 @@ void readback_create(const lamp *l, readback *out)
             for (uint32_t x = 0; x < out->width; x++)
                 out->fan_depth[((size_t)layer * out->height + y) * out->width + x] =
                     readback_sample(out, layer, 0, x, y);
+    memcpy(out->fold_levels, layout.folds, sizeof out->fold_levels);
+    out->layer_fold_words = (size_t)layout.layer_fold_words;
+    if (o->outlines)
+        out->folds = copy_range(&o->block, o->layout.fold_bits.offset, o->layout.fold_bits.size);
     out->ranges = copy_range(&o->block, o->layout.ranges.offset, o->layout.ranges.size);
     free(header);
     free(plan);
@@ -77,6 +82,7 @@ void readback_destroy(readback *r)
     free(r->samples);
     free(r->fan_depth);
     free(r->ranges);
+    free(r->folds);
 }
 
 reference_range readback_pyramid(const readback *r, uint32_t layer, uint32_t level, uint32_t x, uint32_t y)
@@ -89,6 +95,12 @@ float readback_sample(const readback *r, uint32_t layer, uint32_t level, uint32_
 {
     const size_t row = (reference_hsm_size(r->width, level) + 3) / 4 * 4;
     return r->samples[4 * (layer * r->layer_quads + r->quads[level]) + y * row + x];
+}
+
+bool readback_folds(const readback *r, uint32_t layer, uint32_t level, uint32_t x, uint32_t y)
+{
+    const size_t words = (reference_hsm_size(r->width, level) + 31) / 32;
+    return r->folds[layer * r->layer_fold_words + r->fold_levels[level] + y * words + x / 32] >> x % 32 & 1;
 }
 
 reference_range readback_wide(const readback *r, uint32_t level, uint32_t x, uint32_t y)

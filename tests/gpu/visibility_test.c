@@ -11,7 +11,7 @@
 
 #include "fixture.h"
 #include "readback.h"
-#include "reference_contour.h"
+#include "reference_outline.h"
 #include "reference_visibility.h"
 #include "scenes.h"
 
@@ -58,6 +58,7 @@ typedef struct differences {
 static void stage_create(stage *s)
 {
     scene_create(&s->info, &s->scene);
+    s->scene.lamp.outlines = true;
     lamp_create(&s->scene.lamp, &s->lamp);
     lamp_reference(&s->scene.lamp, &s->map);
     for (uint32_t i = 0; i < s->scene.lamp.layer_count; i++) {
@@ -95,6 +96,26 @@ static void stage_destroy(stage *s)
     scene_destroy(&s->scene);
 }
 
+/* Area within outlines; overlaps of quads count twice, but clipped to the light each. */
+static double outline_area(const reference_dual_grid *grids, uint32_t layer_count, const reference_map *map,
+                           const reference_settings *settings, const reference_receiver *receiver)
+{
+    reference_outline outline = {0};
+    double area = 0.0;
+    if (receiver->state != REFERENCE_RECEIVER_ACTIVE)
+        return 0.0;
+    for (uint32_t i = 0; i < layer_count; i++) {
+        const reference_rect all = {0, 0, (int32_t)grids[i].columns - 1, (int32_t)grids[i].rows - 1};
+        reference_occlusion layer;
+        assert_true(reference_outline_extract(&grids[i], map, settings, receiver, 1, all, REFERENCE_EXTRACT_WALK, NULL,
+                                              &outline));
+        reference_outline_occlusion(&grids[i], map, settings, receiver, &outline, &layer);
+        area = settings->merge == SOFTSH_MERGE_MAXIMUM ? fmax(area, layer.area) : area + layer.area;
+    }
+    reference_outline_free(&outline);
+    return fmin(area, 1.0);
+}
+
 /* What the settings ask for, of all receivers. */
 static void reference_image(const stage *s, const softsh_settings *settings, bool normals, double *visibility)
 {
@@ -106,8 +127,9 @@ static void reference_image(const stage *s, const softsh_settings *settings, boo
                                        .level = settings->min_level};
     const uint32_t layer_count = s->scene.lamp.layer_count;
     const bool contours = settings->technique == SOFTSH_TECHNIQUE_CONTOUR && !s->map.point;
+    const bool outlines = settings->outline && settings->technique == SOFTSH_TECHNIQUE_AREA;
     reference_dual_grid grids[2];
-    for (uint32_t i = 0; i < layer_count && contours; i++)
+    for (uint32_t i = 0; i < layer_count && (contours || outlines); i++)
         assert_true(reference_dual_grid_create(&grids[i], &s->map, &wanted, layers[i]));
     for (uint32_t i = 0; i < MAX_PIXELS; i++) {
         const reference_receiver *const r = &s->receivers[normals][i];
@@ -116,11 +138,15 @@ static void reference_image(const stage *s, const softsh_settings *settings, boo
             assert_true(reference_contour_visibility(grids, layer_count, &s->map, &wanted, r, &visibility[i]));
             continue;
         }
+        if (outlines) {
+            visibility[i] = reference_visible(r, outline_area(grids, layer_count, &s->map, &wanted, r));
+            continue;
+        }
         assert_true(reference_visibility(&s->map, layers, layer_count, &wanted, r, &o));
         visibility[i] =
             reference_visible(r, settings->technique == SOFTSH_TECHNIQUE_AREA ? fmin(o.area, 1.0) : o.bitmask);
     }
-    for (uint32_t i = 0; i < layer_count && contours; i++)
+    for (uint32_t i = 0; i < layer_count && (contours || outlines); i++)
         reference_dual_grid_destroy(&grids[i]);
 }
 
@@ -249,6 +275,33 @@ static void contours_are_the_references(void **state)
     assert_true(within_limits("contour", "", "", &d));
 }
 
+/* Outlines are what all microquads together are, in bits; areas are those of the outline. */
+static void outlines_are_the_references(void **state)
+{
+    static const softsh_pattern patterns[] = {SOFTSH_PATTERN_8X8, SOFTSH_PATTERN_16X16, SOFTSH_PATTERN_16X16_JITTERED,
+                                              SOFTSH_PATTERN_8X8};
+    uint32_t next = 0;
+    bool failed = false;
+    (void)state;
+    print_heading();
+    for (uint32_t view = 0; view < 4; view++) {
+        const bool area = view == 3;
+        differences d = {0};
+        const softsh_settings settings = {
+            .technique = area ? SOFTSH_TECHNIQUE_AREA : SOFTSH_TECHNIQUE_BITMASK,
+            .pattern = patterns[view],
+            .primitive = SOFTSH_PRIMITIVE_MICROQUAD,
+            .aggregation = SOFTSH_AGGREGATION_SAMPLED,
+            .merge = view & 1 ? SOFTSH_MERGE_MAXIMUM : SOFTSH_MERGE_UNION,
+            .outline = 1,
+            .no_hierarchy = 1,
+        };
+        check_view(settings, view == 1, 0, SCENES, &next, &d);
+        failed |= !within_limits(area ? "area" : "bitmask", "outline", area ? "" : view ? "16x16" : "8x8", &d);
+    }
+    assert_false(failed);
+}
+
 /* Lights without size: every pixel is dark or lit, and settings do not matter. */
 static void hard_shadows_are_the_references(void **state)
 {
@@ -297,6 +350,7 @@ int main(void)
         cmocka_unit_test(bitmasks_are_the_references),
         cmocka_unit_test(areas_are_the_references),
         cmocka_unit_test(contours_are_the_references),
+        cmocka_unit_test(outlines_are_the_references),
         cmocka_unit_test(hard_shadows_are_the_references),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
