@@ -135,6 +135,9 @@ softsh_result softshi_check_settings(const softsh_context *context, const softsh
         if (!(costs[i].value >= 0.0f && costs[i].value <= 1e6f))
             return INVALID("softsh_settings::packet_cost.%s is %g, expected 0 to 1e6", costs[i].name,
                            (double)costs[i].value);
+    if (!(s->packet_cost.divergence >= 0.0f && s->packet_cost.divergence <= 1.0f))
+        return INVALID("softsh_settings::packet_cost.divergence is %g, expected 0 to 1",
+                       (double)s->packet_cost.divergence);
     if (s->filter_passes > 16)
         return INVALID("softsh_settings::filter_passes is %u, expected at most 16", s->filter_passes);
     return SOFTSH_SUCCESS;

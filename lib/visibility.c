@@ -113,7 +113,7 @@ static void fill_frame(const softsh_view *v, const softsh_visibility_info *info,
                          (info->override_bias ? SS_FLAG_OVERRIDE_BIAS : 0u);
     softshi_layout_lists(&v->settings, frame->tiles.z, &frame->lists);
     const softsh_packet_cost *cost = &v->settings.packet_cost;
-    frame->cost = (ss_vec4){cost->node, cost->edge, cost->projection, 0.0f};
+    frame->cost = (ss_vec4){cost->node, cost->edge, cost->projection, cost->divergence};
     frame->quality.x = v->settings.budget;
     frame->quality.y = v->settings.min_level;
     frame->quality.z = area.extent.width * area.extent.height;

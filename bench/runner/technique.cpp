@@ -162,6 +162,12 @@ const std::vector<Setting> &setting_list()
              if (std::sscanf(v.c_str(), "%f,%f,%f%c", &cost.node, &cost.edge, &cost.projection, &rest) != 3)
                  fail("setting cost is \"%s\", expected three numbers with commas", v.c_str());
          }},
+        {"divergence", "P: packets likelier not to have one contour are evaluated apart; 1: none", ON_CONTOUR,
+         [](Technique &t, const std::string &v) {
+             char rest = 0;
+             if (std::sscanf(v.c_str(), "%f%c", &t.library.packet_cost.divergence, &rest) != 1)
+                 fail("setting divergence is \"%s\", expected a number", v.c_str());
+         }},
         {"sparse", "on | off: interpolate pixels between others", ON_LIBRARY,
          [](Technique &t, const std::string &v) { t.library.sparse = choose("sparse", v, on_off); }},
         {"filter", "N: passes of the post filter", ON_AREA | ON_BITMASK,

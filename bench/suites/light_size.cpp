@@ -21,6 +21,7 @@ void run_light_size(Bench &bench)
         "area primitive=micropatch",
         "bitmask primitive=micropatch",
         "bitmask primitive=microquad",
+        "bitmask outline=on",
         "bitmask primitive=micropatch budget=16",
         "contour",
         "auto",

@@ -54,7 +54,8 @@ typedef enum softsh_merge {
 
 /* Neighbouring pixels that share one search for contours; contour only, see Yang et al. 2009. Packets that do not pay,
  * or are not of one contour, are evaluated pixel by pixel. With `sparse`, packets are of every second pixel of 4 x 4,
- * and of what is left of them. No result depends on it but for rounding. */
+ * and of what is left of them. No result depends on it but for rounding, and with 3X3, whose pixels are classified in
+ * blocks of their own, for the shortcuts that classification takes (docs/numerics.md, section 8). */
 typedef enum softsh_packet {
     SOFTSH_PACKET_DEFAULT = 0, /* what is fast on this kind of device: 4X4 on CPUs, 1X1 elsewhere */
     SOFTSH_PACKET_1X1 = 1,
@@ -64,10 +65,14 @@ typedef enum softsh_packet {
     SOFTSH_PACKET_ADAPTIVE = 5 /* 4 x 4, 2 x 2 or single pixels, chosen for each part of the image */
 } softsh_packet;
 
-/* Relative costs of a packet's evaluation, equation 6 of Yang et al. 2009: of a sample or block looked at, of an edge of
- * the contour, of an edge's projection for one pixel. They decide whether a packet pays. */
+/* What decides whether a packet pays, Yang et al. 2009. They change times only. */
 typedef struct softsh_packet_cost {
-    float node, edge, projection; /* 0 to 1e6 each; all zero: what was measured on this kind of device */
+    /* Relative costs, equation 6: of a sample or block looked at, of an edge of the contour, of an edge's projection for
+     * one pixel. 0 to 1e6 each; all zero: what was measured on this kind of device. */
+    float node, edge, projection;
+    /* Packets whose pixels are likelier not to have one contour (equation 5) are evaluated apart: 0 to 1, 1: none; 0:
+     * this kind of device's. */
+    float divergence;
 } softsh_packet_cost;
 
 typedef struct softsh_settings {

@@ -8,8 +8,8 @@ static const struct device_class {
     softsh_packet packet;
     softsh_packet_cost cost;
 } device_classes[] = {
-    [false] = {SOFTSH_PACKET_1X1, {0.0f, 13.5f, 5.8f}},
-    [true] = {SOFTSH_PACKET_4X4, {0.0f, 13.5f, 5.8f}},
+    [false] = {SOFTSH_PACKET_1X1, {0.0f, 13.5f, 5.8f, 1.0f}},
+    [true] = {SOFTSH_PACKET_4X4, {0.0f, 13.5f, 5.8f, 1.0f}},
 };
 
 softsh_settings softshi_settings_resolve(const softsh_settings *settings, bool software)
@@ -22,8 +22,14 @@ softsh_settings softshi_settings_resolve(const softsh_settings *settings, bool s
             .struct_size = sizeof s, .technique = SOFTSH_TECHNIQUE_CONTOUR, .budget = 32, .sparse = 1};
     if (s.packet == SOFTSH_PACKET_DEFAULT)
         s.packet = device_classes[software].packet;
-    if (s.packet_cost.node == 0.0f && s.packet_cost.edge == 0.0f && s.packet_cost.projection == 0.0f)
-        s.packet_cost = device_classes[software].cost;
+    const softsh_packet_cost *cost = &device_classes[software].cost;
+    if (s.packet_cost.divergence == 0.0f)
+        s.packet_cost.divergence = cost->divergence;
+    if (s.packet_cost.node == 0.0f && s.packet_cost.edge == 0.0f && s.packet_cost.projection == 0.0f) {
+        s.packet_cost.node = cost->node;
+        s.packet_cost.edge = cost->edge;
+        s.packet_cost.projection = cost->projection;
+    }
     if (s.pattern == SOFTSH_PATTERN_DEFAULT)
         s.pattern = SOFTSH_PATTERN_16X16_JITTERED;
     if (s.primitive == SOFTSH_PRIMITIVE_DEFAULT)

@@ -175,6 +175,19 @@ float cost_of(ivec2 lo, ivec2 hi, uint receivers)
     return w * (frame.cost.x * log2(w) + frame.cost.y + frame.cost.z * float(receivers));
 }
 
+// Equations 4 and 5: how probable it is that some sample occludes some receivers and not others, if the kernel's depths were
+// spread evenly. Heights over planes stand for the paper's depths.
+float divergence()
+{
+    const ivec2 lo = samples.lo << int(samples.level),
+                hi = min((samples.hi + 1 << int(samples.level)) - 1, ivec2(occ.size.xy) - 1);
+    const vec2 range = packet.side * ss_range(lo, max(hi, lo));
+    const float low = min(range.x, range.y), high = max(range.x, range.y);
+    const float null = max(min(packet.most, high) - max(packet.least, low), 0.0) / max(high - low, 1e-30);
+    const vec2 w = vec2(max(samples.hi - samples.lo + 1, 0));
+    return 1.0 - pow(1.0 - min(null, 1.0), w.x * w.y);
+}
+
 // Loads the pixels of `mask` that are neither lit nor dark by what their kernels hold; those of one level and side make the packet.
 // Returns the others.
 uint load_packet(ivec2 corner, uint mask, float g_hi)
@@ -235,7 +248,7 @@ uint load_packet(ivec2 corner, uint mask, float g_hi)
         const int i = findLSB(todo);
         ss_packet_add(packet, vec2(at_u[i], at_v[i]), at_g[i], border[i], vec2(gradient_x[i], gradient_y[i]), drift[i]);
     }
-    if (!ALONE && cost_of(samples.lo, samples.hi, uint(bitCount(together))) > alone) {
+    if (!ALONE && (cost_of(samples.lo, samples.hi, uint(bitCount(together))) > alone || divergence() > frame.cost.w)) {
         apart |= together;
         together = 0u;
         samples.hi = samples.lo - 2;

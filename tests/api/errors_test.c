@@ -270,6 +270,8 @@ static void view_errors(void **state)
     BAD(VIEW, in.settings.packet_cost.node = -1.0f, INVALID, "softsh_settings::packet_cost.node");
     BAD(VIEW, in.settings.packet_cost.edge = 2e6f, INVALID, "softsh_settings::packet_cost.edge");
     BAD(VIEW, in.settings.packet_cost.projection = NAN, INVALID, "softsh_settings::packet_cost.projection");
+    BAD(VIEW, in.settings.packet_cost.divergence = 1.5f, INVALID, "softsh_settings::packet_cost.divergence");
+    BAD(VIEW, in.settings.packet_cost.divergence = NAN, INVALID, "softsh_settings::packet_cost.divergence");
     BAD(VIEW, in.settings.filter_passes = 17, INVALID, "softsh_settings::filter_passes");
     scene_inputs valid;
     scene_fill(with.s, LAMP_RECTANGLE, 1, &valid);
