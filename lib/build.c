@@ -74,8 +74,7 @@ static softsh_result plan_build(const softsh_occluders *o, const softsh_build_in
     if (result == SOFTSH_SUCCESS)
         result = softshi_light_space_create(context, &light, &plan->maps[0], &plan->light);
     if (result == SOFTSH_SUCCESS)
-        softshi_layout_occluders(plan->extent, info->map_count, o->join_texels, o->outlines,
-                                 &plan->layout);
+        softshi_layout_occluders(plan->extent, info->map_count, o->join_texels, o->outlines, &plan->layout);
     return result;
 }
 

@@ -18,7 +18,7 @@ struct softsh_context {
     softsh_message_fn message;
     void *message_user;
     VkPhysicalDeviceLimits limits;
-    bool software; /* a CPU takes the GPU's place */
+    bool software;               /* a CPU takes the GPU's place */
     VkDeviceSize max_allocation; /* maxMemoryAllocationSize */
     VkPhysicalDeviceMemoryProperties memory;
     VkDescriptorSetLayout set_layouts[2]; /* SS_SET_OCCLUDERS, SS_SET_IO */

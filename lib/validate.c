@@ -121,8 +121,8 @@ softsh_result softshi_check_settings(const softsh_context *context, const softsh
             return INVALID("softsh_settings::outline is set, but aggregation is SOFTSH_AGGREGATION_NEAREST, expected "
                            "SOFTSH_AGGREGATION_SAMPLED");
         if (s->pattern == SOFTSH_PATTERN_32X32)
-            return UNSUPPORTED("softsh_settings::outline is set, but pattern is SOFTSH_PATTERN_32X32, which it does not "
-                               "support");
+            return UNSUPPORTED("softsh_settings::outline is set, but pattern is SOFTSH_PATTERN_32X32, expected at "
+                               "most 16 x 16");
         if (s->filter_passes > 0)
             return INVALID("softsh_settings::outline is set, but filter_passes is %u, expected 0", s->filter_passes);
     }
@@ -266,8 +266,8 @@ static softsh_result check_map(const softsh_context *context, const softsh_map *
                            map->role == SOFTSH_MAP_FACE ? "SOFTSH_MAP_FACE" : "SOFTSH_MAP_CASCADE");
     for (int axis = 0; axis < 2; axis++) {
         if (map->role == SOFTSH_MAP_LAYER && (map->grid[axis] != 0 || map->cell[axis] != 0))
-            return INVALID("softsh_map[%u]::grid is (%u, %u) and ::cell (%u, %u), expected zeros with SOFTSH_MAP_LAYER", i,
-                           map->grid[0], map->grid[1], map->cell[0], map->cell[1]);
+            return INVALID("softsh_map[%u]::grid is (%u, %u) and ::cell (%u, %u), expected zeros with SOFTSH_MAP_LAYER",
+                           i, map->grid[0], map->grid[1], map->cell[0], map->cell[1]);
         if (map->role == SOFTSH_MAP_SUBLIGHT && (map->grid[axis] == 0 || map->grid[axis] > SOFTSH_MAX_SUBLIGHTS))
             return INVALID("softsh_map[%u]::grid is (%u, %u), expected 1 to %u each", i, map->grid[0], map->grid[1],
                            SOFTSH_MAX_SUBLIGHTS);
@@ -299,11 +299,10 @@ static softsh_result check_same_part(const softsh_context *context, const softsh
                        (int)map->role, (int)first->role);
     if (map->grid[0] != first->grid[0] || map->grid[1] != first->grid[1] || map->cell[0] != first->cell[0] ||
         map->cell[1] != first->cell[1])
-        return INVALID(
-            "softsh_map[%u] is of sub-light (%u, %u) of %u x %u, but softsh_map[0] of (%u, %u) of %u x %u, expected a build "
-            "for each sub-light",
-            i, map->cell[0], map->cell[1], map->grid[0], map->grid[1], first->cell[0], first->cell[1], first->grid[0],
-            first->grid[1]);
+        return INVALID("softsh_map[%u] is of sub-light (%u, %u) of %u x %u, but softsh_map[0] of (%u, %u) of %u x %u, "
+                       "expected a build for each sub-light",
+                       i, map->cell[0], map->cell[1], map->grid[0], map->grid[1], first->cell[0], first->cell[1],
+                       first->grid[0], first->grid[1]);
     return SOFTSH_SUCCESS;
 }
 

@@ -11,7 +11,7 @@
 /* Passes that this view's settings do not need are not there. */
 typedef struct softshi_view_pipelines {
     softshi_pipeline classify_columns, classify_tiles;
-    softshi_pipeline classify_pixels; /* or, for techniques that evaluate packets, of blocks of them */
+    softshi_pipeline classify_pixels;    /* or, for techniques that evaluate packets, of blocks of them */
     softshi_pipeline evaluate[SS_LISTS]; /* by what one invocation evaluates */
     softshi_pipeline evaluate_layered;   /* bitmasks of occluders that have more than one layer */
     softshi_pipeline interpolate, hard, filter, combine;

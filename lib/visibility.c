@@ -56,8 +56,9 @@ static softsh_result check(const softsh_view *v, const softsh_visibility_info *i
                             "softsh_visibility_info::stats_offset is %llu, expected a multiple of 4",
                             (unsigned long long)info->stats_offset);
     if (v->settings.outline && !info->occluders->outlines)
-        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT,
-                            "softsh_visibility_info::occluders was created without outlines, which the view's settings need");
+        return softshi_fail(
+            context, SOFTSH_ERROR_INVALID_ARGUMENT,
+            "softsh_visibility_info::occluders was created without outlines, which the view's settings need");
     if (softshi_settings_need_alignment(&v->settings) && !info->occluders->light.point &&
         !info->occluders->light.axis_aligned)
         return softshi_fail(
@@ -73,16 +74,18 @@ static softsh_result check_sublight(const softsh_view *v, const softsh_visibilit
     const softshi_sublight *const now = &info->occluders->sublight, *const last = &v->combined_last;
     const uint32_t index = softshi_sublight_index(now);
     if (!v->sublights && softshi_sublight_count(now) > 1)
-        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT,
-                            "softsh_visibility_info::occluders is of a sub-light of %u x %u, but the view was created without "
-                            "sublights",
-                            now->grid[0], now->grid[1]);
+        return softshi_fail(
+            context, SOFTSH_ERROR_INVALID_ARGUMENT,
+            "softsh_visibility_info::occluders is of a sub-light of %u x %u, but the view was created without "
+            "sublights",
+            now->grid[0], now->grid[1]);
     if (index == 0)
         return SOFTSH_SUCCESS;
     if (v->combined == 0)
-        return softshi_fail(context, SOFTSH_ERROR_STATE,
-                            "softsh_visibility_info::occluders is of sub-light (%u, %u) of %u x %u, expected (0, 0) first",
-                            now->cell[0], now->cell[1], now->grid[0], now->grid[1]);
+        return softshi_fail(
+            context, SOFTSH_ERROR_STATE,
+            "softsh_visibility_info::occluders is of sub-light (%u, %u) of %u x %u, expected (0, 0) first",
+            now->cell[0], now->cell[1], now->grid[0], now->grid[1]);
     if (index != v->combined || !softshi_sublight_same_grid(now, last))
         return softshi_fail(
             context, SOFTSH_ERROR_STATE,
@@ -90,12 +93,12 @@ static softsh_result check_sublight(const softsh_view *v, const softsh_visibilit
             now->cell[0], now->cell[1], now->grid[0], now->grid[1], v->combined % last->grid[0],
             v->combined / last->grid[0], last->grid[0], last->grid[1]);
     if (memcmp(&area, &v->combined_area, sizeof area) != 0)
-        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT,
-                            "softsh_visibility_info::render_area is %d, %d, %u x %u, expected that of the other sub-lights, "
-                            "%d, %d, %u x %u",
-                            area.offset.x, area.offset.y, area.extent.width, area.extent.height,
-                            v->combined_area.offset.x, v->combined_area.offset.y, v->combined_area.extent.width,
-                            v->combined_area.extent.height);
+        return softshi_fail(
+            context, SOFTSH_ERROR_INVALID_ARGUMENT,
+            "softsh_visibility_info::render_area is %d, %d, %u x %u, expected that of the other sub-lights, "
+            "%d, %d, %u x %u",
+            area.offset.x, area.offset.y, area.extent.width, area.extent.height, v->combined_area.offset.x,
+            v->combined_area.offset.y, v->combined_area.extent.width, v->combined_area.extent.height);
     return SOFTSH_SUCCESS;
 }
 

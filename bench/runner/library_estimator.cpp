@@ -50,8 +50,8 @@ class LibraryEstimator final : public Estimator
             view.max_recordings = static_cast<uint32_t>(maps_.size());
             library_.check(softsh_view_create(library_.context, &view, &view_));
             if (stats)
-                check(gpu_,
-                      gpu_buffer_create(&gpu_, maps_.size() * sizeof(softsh_stats), VK_BUFFER_USAGE_TRANSFER_DST_BIT, true, &stats_));
+                check(gpu_, gpu_buffer_create(&gpu_, maps_.size() * sizeof(softsh_stats),
+                                              VK_BUFFER_USAGE_TRANSFER_DST_BIT, true, &stats_));
         } catch (...) {
             release();
             throw;
@@ -119,10 +119,9 @@ class LibraryEstimator final : public Estimator
         for (size_t i = 1; i < all.size(); i++)
             for (uint64_t softsh_stats::*count :
                  {&softsh_stats::pixels, &softsh_stats::lit, &softsh_stats::umbra, &softsh_stats::active,
-                  &softsh_stats::nodes, &softsh_stats::primitives, &softsh_stats::tiles,
-                  &softsh_stats::undecided_tiles, &softsh_stats::clamped, &softsh_stats::interpolated,
-                  &softsh_stats::packets, &softsh_stats::incoherent, &softsh_stats::diverged, &softsh_stats::edges,
-                  &softsh_stats::visited})
+                  &softsh_stats::nodes, &softsh_stats::primitives, &softsh_stats::tiles, &softsh_stats::undecided_tiles,
+                  &softsh_stats::clamped, &softsh_stats::interpolated, &softsh_stats::packets,
+                  &softsh_stats::incoherent, &softsh_stats::diverged, &softsh_stats::edges, &softsh_stats::visited})
                 total.*count += all[i].*count;
         return total;
     }

@@ -10,8 +10,8 @@
 
 struct SceneCaseOptions {
     uint32_t width = 640, height = 480;
-    uint32_t map_size = 0; // edge in texels; 0: the scene's own
-    uint32_t layers = 2;   // depth-peeled maps: the nearest surfaces, the nearest behind those
+    uint32_t map_size = 0;  // edge in texels; 0: the scene's own
+    uint32_t layers = 2;    // depth-peeled maps: the nearest surfaces, the nearest behind those
     uint32_t sublights = 0; // instead, a map for each of N x N parts of the light
 };
 

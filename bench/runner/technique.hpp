@@ -28,7 +28,7 @@ struct Technique {
     bool automatic = false;    // the library without settings
     softsh_settings library{}; // unless automatic
     softsh_accel accel = SOFTSH_ACCEL_AUTO;
-    bool reuse = false; // one structure for all sub-lights, built again before each
+    bool reuse = false;             // one structure for all sub-lights, built again before each
     uint32_t rays = 64;             // embree: of a pixel, rounded down to a square number
     std::optional<uint32_t> layers; // use only the first N layer maps
 };

@@ -306,7 +306,8 @@ void packets(Bench &bench, const SceneCaseOptions &size, const Effort &effort)
              "Packets are never slower, whatever the light's size, nor on fine detail (2 x 2: twice as fast); coherent "
              "packets 52, 68, 88 % at light sizes 1 : 2 : 4",
              "", true, ""};
-    Claim s10{"S10", "Divergence estimate (T_d = 0.8): a misclassified packet changes time, never pixels", "", true, ""};
+    Claim s10{"S10", "Divergence estimate (T_d = 0.8): a misclassified packet changes time, never pixels", "", true,
+              ""};
     const std::vector<std::pair<const char *, double>> scenes =
         bench.quick() ? std::vector<std::pair<const char *, double>>{{"balls", 0.8}}
                       : std::vector<std::pair<const char *, double>>{
@@ -330,7 +331,8 @@ void packets(Bench &bench, const SceneCaseOptions &size, const Effort &effort)
             const double gain = *stage_ms(rows.at(single), "evaluate") / *stage_ms(row, "evaluate");
             const double apart = static_cast<double>(row.stats->incoherent + row.stats->diverged) /
                                  std::max(1.0, static_cast<double>(row.stats->packets));
-            s8.measured += text("%s %.2f times as fast, %.0f %% coherent, ", packet.c_str(), gain, 100.0 - 100.0 * apart);
+            s8.measured +=
+                text("%s %.2f times as fast, %.0f %% coherent, ", packet.c_str(), gain, 100.0 - 100.0 * apart);
             best = std::max(best, gain);
             double &largest = packet == "3x3" ? most_of_3x3 : most;
             largest = std::max(largest, difference(bench, *bench_case, single, common + packet));
@@ -344,8 +346,9 @@ void packets(Bench &bench, const SceneCaseOptions &size, const Effort &effort)
         s10.measured += text("%s: T_d 0.01 to 1 changes no pixel by more than %.1e; ", where.c_str(), change);
         s10.reproduced = *s10.reproduced && change <= 1e-4;
     }
-    s7.why = "largest difference of a pixel between 1x1 and 2x2, 4x4 and adaptive packets; 3x3 has other blocks, for which "
-             "the shortcuts of classification, which are not exact, find other pixels lit";
+    s7.why =
+        "largest difference of a pixel between 1x1 and 2x2, 4x4 and adaptive packets; 3x3 has other blocks, for which "
+        "the shortcuts of classification, which are not exact, find other pixels lit";
     s8.why = "time of evaluation; reproduced if some size of packets is at least as fast as single pixels everywhere. "
              "A GPU has lanes to spare before it has work to save, the software driver has not";
     for (const Claim &claim : {s6, s7, s8, s10})
@@ -355,8 +358,8 @@ void packets(Bench &bench, const SceneCaseOptions &size, const Effort &effort)
 // S9: what the parts of a light look at together.
 void sublights(Bench &bench, const SceneCaseOptions &size, const Effort &effort)
 {
-    Claim claim{"S9", "Visited texels summed over S x S sub-lights stay at the single map's count; m layers raise it", "",
-                true, ""};
+    Claim claim{"S9", "Visited texels summed over S x S sub-lights stay at the single map's count; m layers raise it",
+                "", true, ""};
     const std::string one = "contour layers=1 packet=1x1", two = "contour packet=1x1";
     SceneCaseOptions parts = size;
     const auto whole = bench.load({CaseSource::Kind::scene, "balls"}, size, 0);

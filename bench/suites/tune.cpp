@@ -1,5 +1,5 @@
-// Costs of packets on this device: time of evaluation against what was counted, equation 6 of Yang et al. 2009. What this prints
-// for a class of devices is what lib/techniques/settings.c has.
+// Costs of packets on this device: time of evaluation against what was counted, equation 6 of Yang et al. 2009. What
+// this prints for a class of devices is what lib/techniques/settings.c has.
 #include <array>
 #include <cstdio>
 

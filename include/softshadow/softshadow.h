@@ -88,10 +88,10 @@ SOFTSH_API softsh_result softsh_cmd_build_occluders(VkCommandBuffer cmd, softsh_
  * buffer last written in TRANSFER / TRANSFER_WRITE. The caller's barrier makes them visible to what reads them. Calls
  * with one view, or with one occluders object, are ordered by the library's own barriers on one queue. Clobbers the
  * compute pipeline, compute descriptor sets 0 and 1 and the push constants.
- * Sub-lights: one call for each, in the order of their cells, u first, with the same render area; the last one writes the
- * mean, the others leave the visibility image alone. They are recorded in the order of submission, with no other call with
- * this view in between and its memory left alone. Occluders may be one object for each sub-light, or one for all of
- * them, built again before each call. */
+ * Sub-lights: one call for each, in the order of their cells, u first, with the same render area; the last one writes
+ * the mean, the others leave the visibility image alone. They are recorded in the order of submission, with no other
+ * call with this view in between and its memory left alone. Occluders may be one object for each sub-light, or one for
+ * all of them, built again before each call. */
 SOFTSH_API softsh_result softsh_cmd_compute_visibility(VkCommandBuffer cmd, softsh_view *view,
                                                        const softsh_visibility_info *info);
 

@@ -67,8 +67,8 @@ typedef enum softsh_packet {
 
 /* What decides whether a packet pays, Yang et al. 2009. They change times only. */
 typedef struct softsh_packet_cost {
-    /* Relative costs, equation 6: of a sample or block looked at, of an edge of the contour, of an edge's projection for
-     * one pixel. 0 to 1e6 each; all zero: what was measured on this kind of device. */
+    /* Relative costs, equation 6: of a sample or block looked at, of an edge of the contour, of an edge's projection
+     * for one pixel. 0 to 1e6 each; all zero: what was measured on this kind of device. */
     float node, edge, projection;
     /* Packets whose pixels are likelier not to have one contour (equation 5) are evaluated apart: 0 to 1, 1: none; 0:
      * this kind of device's. */
@@ -83,8 +83,8 @@ typedef struct softsh_settings {
     softsh_aggregation aggregation;
     softsh_merge merge;
     uint32_t budget;        /* about budget x budget micro-occluders per layer and pixel; 0 and large numbers:
-                               240 x 240 micropatches, 160 x 160 microquads or 128 x 128 samples of contours, shared by the
-                               layers; at most 4096 */
+                               240 x 240 micropatches, 160 x 160 microquads or 128 x 128 samples of contours, shared
+                               by the layers; at most 4096 */
     uint32_t min_level;     /* never evaluate below this level; 0 to 13; for comparisons */
     uint32_t filter_passes; /* post filter of section 3.1, 0 to 16; bitmask only */
     uint32_t sparse;        /* nonzero: evaluate every second pixel of every second row, and of the rest those whose
@@ -92,10 +92,10 @@ typedef struct softsh_settings {
                                filter_passes */
     softsh_packet packet;   /* contour only */
     softsh_packet_cost packet_cost; /* contour only; `softshadow-bench tune` measures it */
-    uint32_t outline;       /* nonzero: of microquads that cannot fold, only the outline of all of them is projected; the
-                               result is the same. For area and bitmask, microquads, sampled depth and patterns up to
-                               16 x 16, without filter_passes, on occluders with `outlines`; contour ignores it */
-    uint32_t no_hierarchy;  /* nonzero: neither prune kernels nor classify; for comparisons */
+    uint32_t outline;      /* nonzero: of microquads that cannot fold, only the outline of all of them is projected; the
+                              result is the same. For area and bitmask, microquads, sampled depth and patterns up to
+                              16 x 16, without filter_passes, on occluders with `outlines`; contour ignores it */
+    uint32_t no_hierarchy; /* nonzero: neither prune kernels nor classify; for comparisons */
 } softsh_settings;
 
 #ifdef __cplusplus

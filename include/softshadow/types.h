@@ -120,7 +120,7 @@ typedef struct softsh_light {
 /* What a map is to its light. */
 typedef enum softsh_map_role {
     SOFTSH_MAP_LAYER = 0,    /* depth-peeled or per-object map; all layers share one projection; occlusion is united */
-    SOFTSH_MAP_SUBLIGHT = 1, /* map, or one of several layers, of a part of a rectangular light: of one cell of a grid */
+    SOFTSH_MAP_SUBLIGHT = 1, /* map, or one of several layers, of a cell of a rectangular light cut into a grid */
     SOFTSH_MAP_FACE = 2,     /* not supported yet */
     SOFTSH_MAP_CASCADE = 3   /* not supported yet */
 } softsh_map_role;
@@ -175,7 +175,7 @@ typedef struct softsh_build_info {
     uint32_t struct_size;
     const softsh_light *light; /* all of it, also for the maps of a sub-light */
     uint32_t map_count;
-    const softsh_map *maps; /* all layers, or all of one sub-light, in any order */
+    const softsh_map *maps;               /* all layers, or all of one sub-light, in any order */
     struct softsh_timestamps *timestamps; /* may be NULL */
 } softsh_build_info;
 

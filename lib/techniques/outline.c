@@ -1,5 +1,5 @@
-/* Microquads by the outline of those that cannot fold and the others one by one: ours, after what contours (Guennebaud et al.
- * 2007; Yang et al. 2009) save and what they lose. */
+/* Microquads by the outline of those that cannot fold and the others one by one: ours, after what contours (Guennebaud
+ * et al. 2007; Yang et al. 2009) save and what they lose. */
 #include "techniques.h"
 
 softsh_result softshi_outline_create(softsh_view *view, const softshi_specialization *constants)

@@ -129,8 +129,8 @@ ss_samples ss_receiver_samples(ss_receiver r, float g_hi)
     return ss_kernel_samples(ss_kernel_box(r.uv, r.uv, r.g, occ.light.w - occ.light.z * r.g, g_hi));
 }
 
-// Whether all samples occlude, given that those do which classification looks at: nearer than `least` in the first layer. The rim is
-// looked at only where that is so, by a loop, because the software driver runs both sides of a branch.
+// Whether all samples occlude, given that those do which classification looks at: nearer than `least` in the first layer. The rim
+// is looked at only where that is so, by a loop, because the software driver runs both sides of a branch.
 bool ss_rim_occludes(ss_samples s, bool others_do, float least)
 {
     const ivec2 lo = s.lo << int(s.level), hi = min(((s.hi + 1) << int(s.level)) - 1, ivec2(occ.size.xy) - 1);

@@ -1,5 +1,5 @@
-/* Outlines in maps larger than a strip of samples, with and without hierarchy, against microquads one by one; and the bits that say
- * which cells fold. */
+/* Outlines in maps larger than a strip of samples, with and without hierarchy, against microquads one by one; and the
+ * bits that say which cells fold. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -108,7 +108,8 @@ static void outlines_are_microquads(void **state)
                 sight_run(&together, &l, &e, NULL, outlines, &few);
                 assert_int_equal(all.lit, few.lit);
                 assert_int_equal(all.active, few.active);
-                /* Microquads' vertices are clamped to the light, outlines clipped: not the same where quads are steep. */
+                /* Microquads' vertices are clamped to the light, outlines clipped: not the same where quads are steep.
+                 */
                 for (int i = 0; i < PIXELS && (!area || content == SCENE_RECTANGLES); i++) {
                     const double difference = fabs((double)quads[i] - (double)outlines[i]);
                     differ += difference > (area ? 0.02 : 1.5 / 64.0);

@@ -47,8 +47,7 @@ void readback_create(const lamp *l, readback *out)
     out->width = header->size.x;
     out->height = header->size.y;
     out->layers = header->size.z;
-    softshi_layout_occluders((VkExtent2D){out->width, out->height}, out->layers, o->join_texels, o->outlines,
-                             &layout);
+    softshi_layout_occluders((VkExtent2D){out->width, out->height}, out->layers, o->join_texels, o->outlines, &layout);
     out->top = layout.top;
     out->join = layout.join;
     out->wide_built = plan->built.x;

@@ -13,7 +13,7 @@ typedef struct readback {
     size_t pyramid_texels, wide_offset;
     uint32_t quads[16]; /* of fan depths, where levels begin */
     size_t layer_quads;
-    float *samples;   /* as the device has them */
+    float *samples;                   /* as the device has them */
     uint32_t *folds, fold_levels[16]; /* bits of cells, where levels begin; NULL without */
     size_t layer_fold_words;
     float *fan_depth; /* of level 0, layer after layer */

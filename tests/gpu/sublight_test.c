@@ -16,8 +16,8 @@ static const softsh_settings views[] = {
 
 typedef struct parts {
     uint32_t grid[2], count;
-    lamp lamps[MOST_PARTS];           /* of a sub-light */
-    softsh_light lights[MOST_PARTS];  /* the same as lights of their own */
+    lamp lamps[MOST_PARTS];            /* of a sub-light */
+    softsh_light lights[MOST_PARTS];   /* the same as lights of their own */
     float *visibility[MOST_PARTS + 1]; /* after each call, and one to spare */
 } parts;
 
@@ -59,8 +59,8 @@ static void create_scene(scene_light light, bool hard, scene *s)
     s->eye.normals = NULL;
 }
 
-/* The mean of visibilities computed one by one, by views that know nothing of sub-lights, is what the last call writes, and
- * the first one that writes at all. */
+/* The mean of visibilities computed one by one, by views that know nothing of sub-lights, is what the last call writes,
+ * and the first one that writes at all. */
 static void the_mean_of_its_parts(void **state)
 {
     static const scene_light lights[] = {SCENE_CENTRED, SCENE_IN_FRONT, SCENE_ROTATED};

@@ -347,10 +347,8 @@ static int teardown(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bitmasks_are_the_references),
-        cmocka_unit_test(areas_are_the_references),
-        cmocka_unit_test(contours_are_the_references),
-        cmocka_unit_test(outlines_are_the_references),
+        cmocka_unit_test(bitmasks_are_the_references),     cmocka_unit_test(areas_are_the_references),
+        cmocka_unit_test(contours_are_the_references),     cmocka_unit_test(outlines_are_the_references),
         cmocka_unit_test(hard_shadows_are_the_references),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
