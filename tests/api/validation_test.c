@@ -49,6 +49,22 @@ static void settings_are_silent(void **state)
             in.maps[0].rect = in.maps[1].rect = (VkRect2D){{3, 1}, {37, 29}};
         if (i == 9)
             in.view.settings = NULL;
+        /* Outlines, and views that combine sub-lights. */
+        in.occluders.outlines = i % 4 == 1;
+        in.view.sublights = i % 3 == 2;
+        if (in.occluders.outlines && in.settings.technique != SOFTSH_TECHNIQUE_CONTOUR) {
+            in.settings.outline = 1;
+            in.settings.primitive = SOFTSH_PRIMITIVE_DEFAULT;
+            in.settings.aggregation = SOFTSH_AGGREGATION_SAMPLED;
+            in.settings.pattern = i % 3;
+            in.settings.filter_passes = 0;
+        }
+        if (in.view.sublights && lamp != LAMP_DIRECTIONAL) {
+            for (uint32_t m = 0; m < in.build.map_count; m++) {
+                in.maps[m].role = SOFTSH_MAP_SUBLIGHT;
+                in.maps[m].grid[0] = in.maps[m].grid[1] = 1;
+            }
+        }
         softsh_occluders *occluders = scene_occluders(context, &in);
         softsh_view *view = scene_view(context, &in);
         scene_render(s, occluders, view, &in);
