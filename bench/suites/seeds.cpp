@@ -175,15 +175,16 @@ void build_cost(Bench &bench, const Effort &effort)
         s16.reproduced = *s16.reproduced && near(ratio(ysm), map == 1024 ? 1.77 : 1.23, 0.25) &&
                          near(ratio(mssm), map == 1024 ? 15.1 : 21.4, 0.25);
         s15.measured += text("%u: %.2f, %.2f, %.2f MiB, ", map, mebibytes(hsm), mebibytes(mssm), mebibytes(ysm));
-        s15.reproduced = *s15.reproduced && mebibytes(hsm) <= (map == 1024 ? 10.67 : 42.67) &&
-                         mebibytes(mssm) <= (map == 1024 ? 88.0 : 384.0) &&
-                         mebibytes(ysm) <= (map == 1024 ? 14.67 : 46.67);
+        const double rounding = 0.005; // of the paper's figures
+        s15.reproduced = *s15.reproduced && mebibytes(hsm) <= (map == 1024 ? 10.67 : 42.67) + rounding &&
+                         mebibytes(mssm) <= (map == 1024 ? 88.0 : 384.0) + rounding &&
+                         mebibytes(ysm) <= (map == 1024 ? 14.67 : 46.67) + rounding;
     }
     if (!*s3.reproduced)
         s3.why = "not all within 25 %";
     if (!*s16.reproduced)
         s16.why = "not all within 25 %";
-    s15.why = *s15.reproduced ? "at most the claimed size; fan depth is one float and the pyramid starts at level 1"
+    s15.why = *s15.reproduced ? "at most the claimed size; fan depths of all levels and a pyramid that starts at level 1"
                               : "larger";
     if (s15.measured.empty())
         s15.reproduced = s16.reproduced = std::nullopt, s15.why = s16.why = "the quick run stops at 512 texels";

@@ -124,6 +124,8 @@ class Section:
                       self.image("stability-plane.svg", "Darkening over the angle"), tables.acne(self.device)),
             self.part("Patterns, primitives, layers and the post filter", "Errors; every one without a budget.",
                       tables.order(self.device)),
+            self.part("Packets", "Evaluation of contours, mean over the suite's cases and lights.",
+                      tables.packets(self.device)),
             self.part("Claims of the papers", "Each held against this run.", tables.claims(self.device)))
 
 

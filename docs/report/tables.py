@@ -155,6 +155,18 @@ def growth(device):
     return table(head, lines)
 
 
+def packets(device):
+    """Times of packets over single pixels', and what the cost model's constants were fitted to."""
+    lines = [[figure["about"].split(",")[0].removeprefix("packet="), fixed(figure["value"], 2)]
+             for figure in device.figures if figure["name"] == "time_of_packets_over_single_pixels"]
+    costs = {figure["name"]: fixed(figure["value"], 1) for figure in device.figures
+             if figure["name"].startswith("packet_cost_")}
+    fitted = (f"Fitted to counts: {costs['packet_cost_node']} ns for a sample or block looked at, "
+              f"{costs['packet_cost_edge']} for an edge found, {costs['packet_cost_projection']} for one projected, of the whole "
+              "device." if costs else "")
+    return table(["packet", "time over single pixels'"], lines) + ("\n\n" + fitted if lines and fitted else "")
+
+
 def skip(device):
     """Times over the copy pass's: without the build, and with it where there is one."""
     values = {}
