@@ -35,6 +35,7 @@ ss_light_map light_map;
 vec3 receiver; // u, v, biased g
 float outline_area, bridge_area;
 uint rounds, edges, bridges;
+bool any_occludes; // any sample of the kernel
 
 // What ss_fill_strip leaves in its arrays is replaced by these, row by row of cells.
 #define smooth_quads ss_strip
@@ -49,23 +50,26 @@ uint load_folds(uint base, uint words, int x0, int y)
     return shift == 0u ? low : low >> shift | high << (32u - shift);
 }
 
-// From samples to quads; returns the rows that outlines run through. `below` is the row of smooth quads under the strip and becomes
-// the last one in it.
-uint find_quads(uint base, uint words, ivec2 last, int x0, int y0, int count, uint columns, inout uint below)
+// From samples to quads: the rows that outlines run through, and those with bridges. `below` is the row of smooth quads under the
+// strip and becomes the last one in it.
+void find_quads(uint base, uint words, ivec2 last, int x0, int y0, int count, uint columns, inout uint below, out uint outlines,
+                out uint bridged)
 {
-    uint rows = 0u, before = below;
+    uint before = below;
+    outlines = bridged = 0u;
     for (int j = 0; j < count; j++) {
         const uint row = ss_strip[j] & ss_strip[j + 1], quads = row & row >> 1 & 0x7fffffffu;
         const uint fold = load_folds(base, words, x0, min(y0 + j, last.y));
         const uint smooth_row = quads & ~fold;
         bridge_quads[j] = quads & fold & columns;
-        smooth_quads[j] = smooth_row;
         const uint sides = (smooth_row ^ before | smooth_row ^ smooth_row << 1) & columns;
-        rows |= uint(sides != 0u) << j;
+        outlines |= uint(sides != 0u) << j;
+        bridged |= uint((quads & fold & columns) != 0u) << j;
+        any_occludes = any_occludes || (ss_strip[j] | ss_strip[j + 1]) != 0u;
+        smooth_quads[j] = smooth_row;
         before = smooth_row;
     }
     below = before;
-    return rows;
 }
 
 vec2 project(ss_grid grid, ivec2 at)
@@ -130,26 +134,32 @@ void add_outline(ss_grid grid, int x0, int y0, uint rows, uint columns, uint bel
     }
 }
 
-void add_bridges(ss_grid grid, int x0, int y0, int count)
+// One loop, not one in another: some drivers run the body of a loop once though it has nothing to do.
+void add_bridges(ss_grid grid, int x0, int y0, uint rows)
 {
     uint todo = 0u;
-    for (int j = 0; j < count; j++) {
-        for (todo = bridge_quads[j]; todo != 0u && rounds < MOST_ROUNDS; todo &= todo - 1u) {
-            const ivec2 at = ivec2(x0 + findLSB(todo), y0 + j);
-            const vec2 a = project(grid, at), b = project(grid, at + ivec2(1, 0)), c = project(grid, at + 1),
-                       d = project(grid, at + ivec2(0, 1));
-            if (SS_PATTERN_SIDE != 0)
-                ss_add_quad(a, b, c, d);
-            else
-                bridge_area += abs(edge_area(a, b) + edge_area(b, c) + edge_area(c, d) + edge_area(d, a));
-            rounds++;
-            bridges++;
+    int row = 0;
+    while ((rows | todo) != 0u && rounds < MOST_ROUNDS) {
+        if (todo == 0u) {
+            row = findLSB(rows);
+            rows &= rows - 1u;
+            todo = bridge_quads[row];
         }
+        const ivec2 at = ivec2(x0 + findLSB(todo), y0 + row);
+        todo &= todo - 1u;
+        const vec2 a = project(grid, at), b = project(grid, at + ivec2(1, 0)), c = project(grid, at + 1),
+                   d = project(grid, at + ivec2(0, 1));
+        if (SS_PATTERN_SIDE != 0)
+            ss_add_quad(a, b, c, d);
+        else
+            bridge_area += abs(edge_area(a, b) + edge_area(b, c) + edge_area(c, d) + edge_area(d, a));
+        rounds++;
+        bridges++;
     }
 }
 
-// One strip of samples after the other. Returns whether any sample occludes.
-bool add_layer(ss_packet packet, uint layer, ss_samples samples)
+// One strip of samples after the other.
+void add_layer(ss_packet packet, uint layer, ss_samples samples)
 {
     const int start = samples.lo.x & ~3;
     const bool in_blocks = SS_HIERARCHY && samples.level + 2u <= occ.levels.x;
@@ -159,18 +169,16 @@ bool add_layer(ss_packet packet, uint layer, ss_samples samples)
     const uvec4 two_levels = occ.folds[samples.level / 2u];
     const uvec2 folds_of_level = samples.level % 2u == 0u ? two_levels.xy : two_levels.zw;
     const uint folds_base = layer * uint(occ.extent.y) + folds_of_level.x;
-    bool any = false;
     int x0 = start, y0 = samples.lo.y, skip = samples.lo.x - start;
     uint below = 0u;
     while (x0 + skip <= samples.hi.x && samples.lo.y <= samples.hi.y) {
         const int count = min(samples.hi.y + 1 - y0, SS_STRIP_ROWS);
         const uint columns = 0x7fffffffu & (0xffffffffu << skip), under = below;
         ss_fill_strip(packet, true, grid, blocks, in_blocks, samples.lo, samples.hi, x0, y0, count);
-        for (int j = 0; j <= count; j++)
-            any = any || ss_strip[j] != 0u;
-        const uint rows = find_quads(folds_base, folds_of_level.y, grid.last, x0, y0, count, columns, below);
-        add_outline(grid, x0, y0, rows, columns, under);
-        add_bridges(grid, x0, y0, count);
+        uint outlines, bridged;
+        find_quads(folds_base, folds_of_level.y, grid.last, x0, y0, count, columns, below, outlines, bridged);
+        add_outline(grid, x0, y0, outlines, columns, under);
+        add_bridges(grid, x0, y0, bridged);
         y0 += SS_STRIP_ROWS;
         if (y0 > samples.hi.y) {
             y0 = samples.lo.y;
@@ -179,7 +187,6 @@ bool add_layer(ss_packet packet, uint layer, ss_samples samples)
             below = 0u;
         }
     }
-    return any;
 }
 
 void main()
@@ -202,13 +209,13 @@ void main()
     ss_packet_add(packet, r.uv, receiver.z, r.side * r.g + band, r.gradient, r.drift);
     const bool disc = (ss_flags & SS_FLAG_DISC) != 0u, mirrored = determinant(light_map.matrix) < 0.0;
     float mask_occlusion = 0.0, area_occlusion = 0.0;
-    bool any = false;
+    any_occludes = false;
     rounds = edges = bridges = 0u;
     ss_mask_clear();
     ss_winding_clear();
     outline_area = bridge_area = 0.0;
     for (uint layer = 0u; layer < ss_layers(); layer++) {
-        any = add_layer(packet, layer, samples) || any;
+        add_layer(packet, layer, samples);
         if (SS_PATTERN_SIDE != 0) {
             ss_winding_to_mask(mirrored);
             ss_winding_clear();
@@ -225,7 +232,7 @@ void main()
     const float occlusion = min((SS_PATTERN_SIDE != 0 ? mask_occlusion : area_occlusion) + r.horizon, 1.0);
     ss_write_visibility(pixel, 1.0 - occlusion);
     if (SS_SPARSE)
-        ss_store_visible(pixel, any || r.horizon > 0.0 ? 1.0 - occlusion : SS_ALL_LIT);
+        ss_store_visible(pixel, any_occludes || r.horizon > 0.0 ? 1.0 - occlusion : SS_ALL_LIT);
     if (SS_STATS) {
         ss_count(SS_STAT_PRIMITIVES, edges + bridges);
         ss_count(SS_STAT_EDGES, edges);
