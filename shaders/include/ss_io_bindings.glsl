@@ -38,7 +38,7 @@ uint ss_filter_index(ivec2 pixel)
     return uint(pixel.y * frame.area.z + pixel.x);
 }
 
-// Where entries of the tiles buffer's parts are; SS_TILE_WORDS says what they are.
+// Where entries of the tiles buffer's parts are; ss_types.h says what they are.
 uint ss_undecided_slot(uint i)
 {
     return frame.tiles.z + 2u * i;

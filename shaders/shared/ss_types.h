@@ -102,7 +102,6 @@ typedef struct ss_ivec4 {
  * tile's columns first and the list of single pixels (pixel, nearest occluder) later. Then what settings ask for: lists of
  * packets (first pixel, nearest occluder, mask of pixels), at most one for each 3 x 3 or 2 x 2 pixels, and what is looked at
  * between the rounds: pixels (pixel, nearest occluder) or blocks (as packets). A list serves both rounds in turn. */
-#define SS_TILE_WORDS (1 + 2 + 2 * SS_TILE_PIXELS)
 #define SS_PACKET_WORDS 3
 #define SS_INTERPOLATED_WORDS (2 * SS_TILE_PIXELS * 3 / 4)
 #define SS_DISPATCH_WIDTH 32768 /* indirect dispatches wrap into y beyond this */
