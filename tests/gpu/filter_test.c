@@ -95,9 +95,9 @@ static void filter_is_the_references(void **state)
         print_message("%2u passes: %u pixels, %u changed, %u wrong, at most by %g\n", passes[k], c.pixels, c.changed,
                       c.wrong, c.most);
         assert_true(c.changed > c.pixels / 20);
-        /* Ties of floats that are none in doubles: a third of the limit on the software driver, more on GPUs, which round
-         * areas otherwise. */
-        assert_true(c.wrong <= c.pixels / 300);
+        /* Ties of floats that are none in doubles, or the other way round: every pass has its own and hands on those
+         * before. */
+        assert_true(c.wrong <= passes[k] * (c.pixels / 1000));
         sight_destroy(&filtered);
         sight_destroy(&plain);
     }
