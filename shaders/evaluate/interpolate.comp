@@ -26,8 +26,15 @@ void main()
     const uint slot = ss_interpolated_slot(index, 2u), id = tiles[slot];
     const float g_hi = uintBitsToFloat(tiles[slot + 1u]);
     const ivec2 pixel = ss_tile_pixel(id / SS_TILE_PIXELS, id % SS_TILE_PIXELS);
+    const ivec4 steps = ss_neighbour_steps(pixel);
+    const ivec2 at[4] = ivec2[](pixel - steps.xy, pixel + steps.xy, pixel - steps.zw, pixel + steps.zw);
+    vec4 depths, stored;
+    for (int i = 0; i < 4; i++) {
+        depths[i] = ss_near_depth(at[i]);
+        stored[i] = ss_near_visible(at[i]);
+    }
     float mean;
-    if (ss_interpolates(pixel, g_hi, mean)) {
+    if (ss_interpolates(pixel, g_hi, ss_near_depth(pixel), depths, stored, mean)) {
         ss_write_visibility(pixel, mean);
         if (SS_STATS)
             ss_count(SS_STAT_INTERPOLATED, 1u);

@@ -22,6 +22,14 @@ layout(local_size_x = SS_EVALUATE_GROUP) in;
 // Fewer pixels than these are not worth a packet.
 const uint LEAST_PACKET = 4u;
 
+// The 3 x 3 pixels of the lattice in and around the block, which its other pixels share.
+float lattice_depth[9], lattice_visible[9];
+
+int lattice_index(ivec2 away)
+{
+    return (away.x >> 1) + 3 * (away.y >> 1);
+}
+
 void main()
 {
     const uint index = (gl_WorkGroupID.y * SS_DISPATCH_WIDTH + gl_WorkGroupID.x) * SS_EVALUATE_GROUP + gl_LocalInvocationIndex;
@@ -30,12 +38,22 @@ void main()
     const uint slot = ss_interpolated_slot(index, SS_PACKET_WORDS), id = tiles[slot], mask = tiles[slot + 2u];
     const float g_hi = uintBitsToFloat(tiles[slot + 1u]);
     const ivec2 corner = ss_tile_pixel(id / SS_TILE_PIXELS, id % SS_TILE_PIXELS);
+    for (int i = 0; i < 9; i++) {
+        const ivec2 at = corner + 2 * ivec2(i % 3, i / 3);
+        lattice_depth[i] = ss_near_depth(at);
+        lattice_visible[i] = ss_near_visible(at);
+    }
     uint left = 0u, interpolated = 0u;
     for (uint todo = mask & ~SS_LATTICE_MASK; todo != 0u; todo &= todo - 1u) {
         const uint bit = uint(findLSB(todo));
-        const ivec2 pixel = corner + ivec2(bit & 3u, bit >> 2);
+        const ivec2 away = ivec2(bit & 3u, bit >> 2), pixel = corner + away;
+        const ivec4 steps = ss_neighbour_steps(pixel);
+        const ivec4 at = ivec4(lattice_index(away - steps.xy), lattice_index(away + steps.xy), lattice_index(away - steps.zw),
+                               lattice_index(away + steps.zw));
+        const vec4 depths = vec4(lattice_depth[at.x], lattice_depth[at.y], lattice_depth[at.z], lattice_depth[at.w]);
+        const vec4 stored = vec4(lattice_visible[at.x], lattice_visible[at.y], lattice_visible[at.z], lattice_visible[at.w]);
         float mean;
-        const bool may = ss_interpolates(pixel, g_hi, mean);
+        const bool may = ss_interpolates(pixel, g_hi, ss_near_depth(pixel), depths, stored, mean);
         if (may)
             ss_write_visibility(pixel, mean);
         interpolated += uint(may);

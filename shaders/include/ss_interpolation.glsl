@@ -25,9 +25,9 @@ float ss_near_visible(ivec2 pixel)
 
 // Whether the kernels of neighbours that are `steps` away on either side overlap: what lies in the kernel of a pixel at `here`,
 // `reach` wide, is in one of theirs then. Where occluders are close and kernels small, a shadow may be narrower than that.
-bool ss_kernels_overlap(ivec2 pixel, vec2 here, ivec2 steps, vec2 reach)
+bool ss_kernels_overlap(ivec2 pixel, vec2 here, ivec2 steps, float depth, vec2 reach)
 {
-    const vec4 there = ss_to_map(vec2(pixel + steps) + 0.5, ss_near_depth(pixel + steps));
+    const vec4 there = ss_to_map(vec2(pixel + steps) + 0.5, depth);
     return all(lessThanEqual(abs(there.xy / there.w - here), reach));
 }
 
@@ -38,16 +38,22 @@ bool ss_is_one_surface(float before, float here, float after)
     return bend <= SS_MOST_BEND * slope + 4.0 * frame.camera.w;
 }
 
-// `mean` is the neighbours' in either case. Occluders up to g_hi may be in the pixel's kernel.
-bool ss_interpolates(ivec2 pixel, float g_hi, out float mean)
+// Where a pixel's neighbours are: at plus and minus the first and the second, two of them twice along an axis, or the four
+// corners.
+ivec4 ss_neighbour_steps(ivec2 pixel)
 {
-    // Two neighbours, twice, along an axis, or the four corners.
-    const ivec2 a = pixel & 1, b = ivec2(a.x, -a.y);
-    const float here = ss_near_depth(pixel);
-    const bool smooth_surface = ss_is_one_surface(ss_near_depth(pixel - a), here, ss_near_depth(pixel + a)) &&
-                                ss_is_one_surface(ss_near_depth(pixel - b), here, ss_near_depth(pixel + b));
-    const vec4 stored =
-        vec4(ss_near_visible(pixel - a), ss_near_visible(pixel + a), ss_near_visible(pixel - b), ss_near_visible(pixel + b));
+    const ivec2 a = pixel & 1;
+    return ivec4(a, a.x, -a.y);
+}
+
+// `depths` and `stored` visibility are the neighbours', in the order -a, a, -b, b; `here` is the pixel's own depth. `mean` is the
+// neighbours' in either case. Occluders up to g_hi may be in the pixel's kernel.
+bool ss_interpolates(ivec2 pixel, float g_hi, float here, vec4 depths, vec4 stored, out float mean)
+{
+    const ivec4 steps = ss_neighbour_steps(pixel);
+    const ivec2 a = steps.xy, b = steps.zw;
+    const bool smooth_surface =
+        ss_is_one_surface(depths.x, here, depths.y) && ss_is_one_surface(depths.z, here, depths.w);
     const vec4 seen = clamp(stored, vec4(0.0), vec4(1.0));
     const float most = max(max(seen.x, seen.y), max(seen.z, seen.w)), least = min(min(seen.x, seen.y), min(seen.z, seen.w));
     const vec4 h = ss_to_map(vec2(pixel) + 0.5, here);
@@ -57,7 +63,8 @@ bool ss_interpolates(ivec2 pixel, float g_hi, out float mean)
     const ss_samples s = ss_kernel_samples(ss_kernel_box(uvg.xy, uvg.xy, uvg.z, den, g_hi));
     const float nearest = ss_range(s.texel_lo, s.texel_hi).y;
     const vec2 reach = ss_light_reach() * ((ss_clip_to_light(SS_HIERARCHY ? min(g_hi, nearest) : g_hi) - uvg.z) / den);
-    const bool overlap = ss_kernels_overlap(pixel, uvg.xy, a, reach) && ss_kernels_overlap(pixel, uvg.xy, b, reach);
+    const bool overlap = ss_kernels_overlap(pixel, uvg.xy, a, depths.y, reach) &&
+                         ss_kernels_overlap(pixel, uvg.xy, b, depths.w, reach);
     // Between kernels in which nothing occludes, or everything, there can be nothing else. But beside ones whose occluders just
     // miss the light, a narrow shadow may lie between.
     const bool tells = (least < 1.0 && most > 0.0) || all(equal(stored, vec4(SS_ALL_LIT))) || all(equal(stored, vec4(SS_ALL_DARK)));
