@@ -184,8 +184,9 @@ void build_cost(Bench &bench, const Effort &effort)
         s3.why = "not all within 25 %";
     if (!*s16.reproduced)
         s16.why = "not all within 25 %";
-    s15.why = *s15.reproduced ? "at most the claimed size; fan depths of all levels and a pyramid that starts at level 1"
-                              : "larger";
+    s15.why = *s15.reproduced
+                  ? "at most the claimed size; fan depths of all levels and a pyramid that starts at level 1"
+                  : "larger";
     if (s15.measured.empty())
         s15.reproduced = s16.reproduced = std::nullopt, s15.why = s16.why = "the quick run stops at 512 texels";
     for (Claim claim : {s3, s15, s16}) {

@@ -221,11 +221,11 @@ typedef struct softsh_stats {
     uint64_t undecided_tiles;   /* needed a look at their pixels */
     uint64_t clamped;           /* active pixels whose level the budget, or the bound on one pixel's work, coarsened */
     uint64_t interpolated;      /* active pixels that took their neighbours' mean instead */
-    uint64_t packets;           /* packets of pixels that evaluation began with; contour only, as the rest */
+    uint64_t packets;           /* packets of pixels that evaluation began with; of contours */
     uint64_t incoherent;        /* of these, with pixels that did not belong together and were evaluated apart */
     uint64_t diverged;          /* of these, not of one contour: all pixels were evaluated apart */
-    uint64_t edges;             /* edges of contours found, by packets and pixels */
-    uint64_t visited;           /* samples and blocks of samples looked at for contours, by packets and pixels */
+    uint64_t edges;             /* edges of contours or outlines found, by packets and pixels */
+    uint64_t visited;           /* samples and blocks of samples looked at for these, likewise */
     uint32_t wide_levels_built; /* MSSM levels of the occluders' last build */
     uint32_t wide_levels_skipped; /* MSSM levels that no kernel of this light and map can ask for */
 } softsh_stats;

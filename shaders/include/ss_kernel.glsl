@@ -71,12 +71,13 @@ float ss_sample_offset(uint level)
     return level == 0u ? 0.5 : 0.5 * float(1u << level) + (SS_SAMPLED ? 0.5 : 0.0);
 }
 
-// Samples of a level that a kernel asks for.
-ss_samples ss_level_samples(vec4 box, uint level)
+// Samples that a kernel asks for, and their level.
+ss_samples ss_kernel_samples(vec4 box)
 {
     ss_samples s;
     const ivec2 limit = ivec2(occ.size.xy) - 1;
-    s.level = level;
+    const ivec2 first = clamp(ss_floor(box.xy), ivec2(0), limit), last = clamp(ss_floor(box.zw), ivec2(0), limit);
+    s.level = ss_extent_level(max(last.x - first.x, last.y - first.y) + 1);
     s.clamped = s.level > frame.quality.y;
     const float t = float(1u << s.level);
     const vec2 a = (box.xy - ss_sample_offset(s.level)) / t, b = (box.zw - ss_sample_offset(s.level)) / t;
@@ -91,13 +92,6 @@ ss_samples ss_level_samples(vec4 box, uint level)
     s.texel_lo = (inner ? clamp(ss_floor(a + 0.5), ivec2(0), top) : s.lo) << int(s.level);
     s.texel_hi = min((((inner ? clamp(ss_floor(b + 0.5), ivec2(0), top) : s.hi) + 1) << int(s.level)) - 1, limit);
     return s;
-}
-
-ss_samples ss_kernel_samples(vec4 box)
-{
-    const ivec2 limit = ivec2(occ.size.xy) - 1;
-    const ivec2 first = clamp(ss_floor(box.xy), ivec2(0), limit), last = clamp(ss_floor(box.zw), ivec2(0), limit);
-    return ss_level_samples(box, ss_extent_level(max(last.x - first.x, last.y - first.y) + 1));
 }
 
 // Half the thickness of the band around the receiver's plane that counts as the receiver's own surface, in texels' rise. A
