@@ -5,6 +5,7 @@ set(SOFTSHADOW_SHADERS
     hierarchy/hierarchy_reduce
     hierarchy/hierarchy_merge
     hierarchy/hierarchy_plan
+    hierarchy/hierarchy_thin
     hierarchy/hierarchy_widen
     hierarchy/hierarchy_fold
     classify/classify_columns

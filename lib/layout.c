@@ -57,8 +57,9 @@ void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_
         out->quads[i] = (uint32_t)out->layer_quads;
         out->layer_quads += (VkDeviceSize)softshi_level_quads(extent.width, i) * softshi_level_size(extent.height, i);
     }
+    out->thin_words = out->top < 2 ? 0 : out->pyramid_texels - out->offsets[2];
     for (uint32_t i = 0; i <= out->top && outlines; i++) {
-        out->folds[i] = (uint32_t)out->layer_fold_words;
+        out->folds[i] = (uint32_t)(out->thin_words + out->layer_fold_words);
         out->layer_fold_words +=
             (VkDeviceSize)softshi_level_words(extent.width, i) * softshi_level_size(extent.height, i);
     }
@@ -80,8 +81,9 @@ void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_
     out->header = append(&end, sizeof(ss_occluders) + sizeof(ss_plan));
     out->fan_depth = append(&end, out->layer_quads * layers * 4 * sizeof(float));
     out->ranges = append(&end, texels * 2 * sizeof(float));
-    /* Never empty: its views are among the descriptors. */
-    out->fold_bits = append(&end, (outlines ? out->layer_fold_words * layers : 1) * sizeof(uint32_t));
+    const VkDeviceSize words = out->thin_words + out->layer_fold_words * layers;
+    /* Never empty: its view is among the descriptors. */
+    out->bits = append(&end, (words ? words : 1) * sizeof(uint32_t));
     out->buffer_size = end;
 }
 

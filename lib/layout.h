@@ -18,7 +18,7 @@ uint32_t softshi_level_quads(uint32_t texels, uint32_t level);
 
 /* One light's structures for maps of `extent`. */
 typedef struct softshi_occluder_layout {
-    softshi_range header, fan_depth, ranges, fold_bits; /* in the buffer */
+    softshi_range header, fan_depth, ranges, bits; /* in the buffer */
     VkDeviceSize buffer_size;
     VkDeviceSize pyramid_texels;     /* of `ranges`, of each layer */
     uint32_t pyramids;               /* one for each layer, and of several one over all; then come the wide levels */
@@ -26,8 +26,9 @@ typedef struct softshi_occluder_layout {
     uint32_t offsets[SS_MAX_LEVELS]; /* first texel of a pyramid level */
     VkDeviceSize layer_quads;        /* of `fan_depth`, four depths each: a layer's levels 0 to top */
     uint32_t quads[SS_MAX_LEVELS];   /* first quad of a level's sampled fan depths */
-    VkDeviceSize layer_fold_words;   /* of `fold_bits`, of each layer; 0 without outlines */
-    uint32_t folds[SS_MAX_LEVELS];   /* first word of a level's bits */
+    VkDeviceSize thin_words;         /* the first of `bits`: a word for each texel of the pyramid from level 2 on */
+    VkDeviceSize layer_fold_words;   /* of `bits`, of each layer; 0 without outlines */
+    uint32_t folds[SS_MAX_LEVELS];   /* first word of a level's folds, of the first layer */
     uint32_t join;                   /* pyramid level the wide part starts from; `top` without one */
     uint32_t wide_levels;            /* 0 without a wide part */
     VkDeviceSize wide_offset;        /* first texel of wide level 1 */

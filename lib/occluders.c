@@ -110,8 +110,8 @@ static void write_descriptors(const softsh_occluders *o)
         {SS_BIND_DEPTHS, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, NULL, &o->depths},
         {SS_BIND_DEPTH_QUADS, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, NULL, &o->depth_quads},
         {SS_BIND_RANGES, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, NULL, &o->ranges},
-        {SS_BIND_FOLDS, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, NULL, &o->folds},
-        {SS_BIND_MADE_FOLDS, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, NULL, &o->folds},
+        {SS_BIND_BITS, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, NULL, &o->bits},
+        {SS_BIND_MADE_BITS, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, NULL, &o->bits},
     };
     VkWriteDescriptorSet writes[SS_OCCLUDER_BINDINGS];
     for (uint32_t i = 0; i < SS_OCCLUDER_BINDINGS; i++)
@@ -137,7 +137,7 @@ static softsh_result finish(softsh_occluders *o)
     if (result == SOFTSH_SUCCESS)
         result = create_texels(o, &layout->ranges, VK_FORMAT_R32G32_SFLOAT, &o->ranges);
     if (result == SOFTSH_SUCCESS)
-        result = create_texels(o, &layout->fold_bits, VK_FORMAT_R32_UINT, &o->folds);
+        result = create_texels(o, &layout->bits, VK_FORMAT_R32_UINT, &o->bits);
     o->block.ready = result == SOFTSH_SUCCESS;
     if (result == SOFTSH_SUCCESS)
         write_descriptors(o);
@@ -197,7 +197,7 @@ void softsh_occluders_destroy(softsh_occluders *o)
     softshi_hierarchy_destroy(o);
     if (o->pool)
         context->vk.DestroyDescriptorPool(context->device, o->pool, context->allocator);
-    const VkBufferView texels[] = {o->depths, o->depth_quads, o->ranges, o->folds};
+    const VkBufferView texels[] = {o->depths, o->depth_quads, o->ranges, o->bits};
     for (size_t i = 0; i < sizeof texels / sizeof *texels; i++)
         if (texels[i])
             context->vk.DestroyBufferView(context->device, texels[i], context->allocator);

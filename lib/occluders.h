@@ -12,7 +12,7 @@
 enum { SOFTSHI_NAME_SIZE = 64 };
 
 typedef struct softshi_hierarchy_pipelines {
-    softshi_pipeline convert, sample, reduce, merge, plan, widen_first, widen, fold;
+    softshi_pipeline convert, sample, reduce, merge, plan, widen_first, widen, thin, fold;
 } softshi_hierarchy_pipelines;
 
 struct softsh_occluders {
@@ -24,7 +24,7 @@ struct softsh_occluders {
     softshi_occluder_layout layout;
     softshi_block block;
     bool outlines;
-    VkBufferView depths, depth_quads, ranges, folds; /* fan depths one by one and by four; ranges; bits */
+    VkBufferView depths, depth_quads, ranges, bits; /* fan depths one by one and by four; ranges; bits */
     VkDescriptorPool pool;
     VkDescriptorSet set;
     VkDescriptorSet *io_sets; /* a ring: one per layer of each recording */

@@ -121,7 +121,8 @@ class LibraryEstimator final : public Estimator
                  {&softsh_stats::pixels, &softsh_stats::lit, &softsh_stats::umbra, &softsh_stats::active,
                   &softsh_stats::nodes, &softsh_stats::primitives, &softsh_stats::tiles, &softsh_stats::undecided_tiles,
                   &softsh_stats::clamped, &softsh_stats::interpolated, &softsh_stats::packets,
-                  &softsh_stats::incoherent, &softsh_stats::diverged, &softsh_stats::edges, &softsh_stats::visited})
+                  &softsh_stats::incoherent, &softsh_stats::diverged, &softsh_stats::edges, &softsh_stats::visited,
+                  &softsh_stats::refined})
                 total.*count += all[i].*count;
         return total;
     }

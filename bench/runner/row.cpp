@@ -214,6 +214,7 @@ std::string to_json(const Row &row)
     add_optional(counts, "undecided_tiles", count(row, &softsh_stats::undecided_tiles));
     add_optional(counts, "clamped", count(row, &softsh_stats::clamped));
     add_optional(counts, "interpolated", count(row, &softsh_stats::interpolated));
+    add_optional(counts, "refined", count(row, &softsh_stats::refined));
     add_optional(counts, "edges", count(row, &softsh_stats::edges));
     add_optional(counts, "visited", count(row, &softsh_stats::visited));
     add_optional(counts, "packets", count(row, &softsh_stats::packets));

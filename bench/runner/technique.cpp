@@ -144,6 +144,8 @@ const std::vector<Setting> &setting_list()
          [](Technique &t, const std::string &v) { t.library.min_level = number("level", v, 0, 13); }},
         {"hierarchy", "on | off: prune kernels and classify", ON_LIBRARY,
          [](Technique &t, const std::string &v) { t.library.no_hierarchy = !choose("hierarchy", v, on_off); }},
+        {"refine", "on | off: finer levels than the budget's where something is thin", ON_LIBRARY,
+         [](Technique &t, const std::string &v) { t.library.no_refinement = !choose("refine", v, on_off); }},
         {"outline", "on | off: microquads by the outline of those that cannot fold", ON_AREA | ON_BITMASK,
          [](Technique &t, const std::string &v) { t.library.outline = choose("outline", v, on_off); }},
         {"packet", "1x1 | 2x2 | 3x3 | 4x4 | adaptive: pixels that share a search for contours", ON_CONTOUR,

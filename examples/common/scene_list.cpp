@@ -130,6 +130,25 @@ SceneSetup contact()
     return s;
 }
 
+// A bush without leaves: rods of two or three texels of the light's map, in all directions.
+SceneSetup twigs()
+{
+    SceneSetup s = start("twigs", 12.0, {0.6, 3.0, 5.6}, {0, 0.8, 0});
+    s.objects.append(make_cylinder(0.05, 0.55, 24, wood), at(0.0, 0.55, 0.0));
+    const int count = 72;
+    const double half = 0.6, golden_angle = 137.50776;
+    for (int i = 0; i < count; i++) {
+        // From steep to flat, and around the trunk.
+        const double lean = 20.0 + 65.0 * i / (count - 1.0);
+        const glm::dmat4 place = at(0.0, 1.1 - 0.4 * i / (count - 1.0), 0.0) * turned(golden_angle * i, {0, 1, 0}) *
+                                 turned(lean, {1, 0, 0}) * at(0.0, half, 0.0);
+        s.objects.append(make_cylinder(0.009, half, 12, i % 3 ? wood : ochre), place);
+    }
+    set_light(s, {-1.5, 5.5, 1.5}, {0, 0.6, 0}, 0.5, 50.0);
+    s.map_size = 1024;
+    return s;
+}
+
 // Low closed ridges: their slopes stay below the light's elevation everywhere, so that nothing shadows anything.
 SceneSetup lit()
 {
@@ -181,6 +200,7 @@ const Entry entries[] = {
     {{"post", "a tall thin post under a large light"}, post},
     {{"silhouette", "occluders hidden from the light's centre by a smaller one above them"}, silhouette},
     {{"contact", "boxes and a cylinder resting on the floor"}, contact},
+    {{"twigs", "thin rods in all directions"}, twigs},
     {{"lit", "gentle slopes, nothing in shadow"}, lit},
     {{"umbra", "all receivers under a big lid"}, umbra},
 };

@@ -95,7 +95,10 @@ typedef struct softsh_settings {
     uint32_t outline;      /* nonzero: of microquads that cannot fold, only the outline of all of them is projected; the
                               result is the same. For area and bitmask, microquads, sampled depth and patterns up to
                               16 x 16, without filter_passes, on occluders with `outlines`; contour ignores it */
-    uint32_t no_hierarchy; /* nonzero: neither prune kernels nor classify; for comparisons */
+    uint32_t no_refinement; /* nonzero: keep to the budget's level also where something in the kernel is thinner than half
+                               the distance of its samples, and perhaps lose its shadow. By default such pixels are
+                               evaluated one or two levels finer, at four times the work each. Sampled depth only */
+    uint32_t no_hierarchy;  /* nonzero: neither prune kernels nor classify; for comparisons */
 } softsh_settings;
 
 #ifdef __cplusplus

@@ -226,6 +226,7 @@ typedef struct softsh_stats {
     uint64_t diverged;          /* of these, not of one contour: all pixels were evaluated apart */
     uint64_t edges;             /* edges of contours or outlines found, by packets and pixels */
     uint64_t visited;           /* samples and blocks of samples looked at for these, likewise */
+    uint64_t refined;           /* active pixels evaluated finer than the budget, for something thin in their kernels */
     uint32_t wide_levels_built; /* MSSM levels of the occluders' last build */
     uint32_t wide_levels_skipped; /* MSSM levels that no kernel of this light and map can ask for */
 } softsh_stats;

@@ -21,7 +21,8 @@ softsh_result softshi_hierarchy_create(softsh_occluders *o)
         {SOFTSHI_SHADER_HIERARCHY_CONVERT, 0, &p->convert}, {SOFTSHI_SHADER_HIERARCHY_SAMPLE, 0, &p->sample},
         {SOFTSHI_SHADER_HIERARCHY_REDUCE, 0, &p->reduce},   {SOFTSHI_SHADER_HIERARCHY_MERGE, 0, &p->merge},
         {SOFTSHI_SHADER_HIERARCHY_PLAN, 0, &p->plan},       {SOFTSHI_SHADER_HIERARCHY_WIDEN, 1, &p->widen_first},
-        {SOFTSHI_SHADER_HIERARCHY_WIDEN, 0, &p->widen},     {SOFTSHI_SHADER_HIERARCHY_FOLD, 0, &p->fold},
+        {SOFTSHI_SHADER_HIERARCHY_WIDEN, 0, &p->widen},     {SOFTSHI_SHADER_HIERARCHY_THIN, 0, &p->thin},
+        {SOFTSHI_SHADER_HIERARCHY_FOLD, 0, &p->fold},
     };
     for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
         if (list[i].shader == SOFTSHI_SHADER_HIERARCHY_FOLD && !o->outlines)
@@ -37,8 +38,8 @@ softsh_result softshi_hierarchy_create(softsh_occluders *o)
 void softshi_hierarchy_destroy(softsh_occluders *o)
 {
     softshi_hierarchy_pipelines *p = &o->pipelines;
-    softshi_pipeline *const all[] = {&p->convert, &p->sample,      &p->reduce, &p->merge,
-                                     &p->plan,    &p->widen_first, &p->widen,  &p->fold};
+    softshi_pipeline *const all[] = {&p->convert,     &p->sample, &p->reduce, &p->merge, &p->plan,
+                                     &p->widen_first, &p->widen,  &p->thin,   &p->fold};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         softshi_pipeline_destroy(o->context, all[i]);
 }
@@ -66,6 +67,9 @@ void softshi_hierarchy_record_convert(softshi_recorder *recorder, const softsh_o
 void softshi_hierarchy_record_levels(softshi_recorder *recorder, const softsh_occluders *o, VkExtent2D extent,
                                      const softshi_occluder_layout *layout, uint32_t layers)
 {
+    if (layout->thin_words > 0)
+        softshi_record_clear(recorder, SOFTSHI_BITS, o->block.buffer, o->layout.bits.offset,
+                             layout->thin_words * sizeof(uint32_t));
     const uint32_t sample_groups = divide_up((uint32_t)layout->layer_quads - layout->quads[1], SS_SAMPLE_GROUP);
     const softshi_pass sample = {
         .pipeline = &o->pipelines.sample,
@@ -80,7 +84,7 @@ void softshi_hierarchy_record_levels(softshi_recorder *recorder, const softsh_oc
         const softshi_pass fold = {
             .pipeline = &o->pipelines.fold,
             .reads = SOFTSHI_HEADER | SOFTSHI_FAN_DEPTH,
-            .writes = SOFTSHI_FOLDS,
+            .writes = SOFTSHI_BITS,
             .groups = {fold_groups < SS_DISPATCH_WIDTH ? fold_groups : SS_DISPATCH_WIDTH,
                        divide_up(fold_groups, SS_DISPATCH_WIDTH), layers},
         };
@@ -118,6 +122,18 @@ void softshi_hierarchy_record_levels(softshi_recorder *recorder, const softsh_oc
         .groups = {1, 1, 1},
     };
     softshi_record_pass(recorder, &plan);
+    if (layout->thin_words > 0) {
+        const uint32_t groups = divide_up((uint32_t)layout->pyramid_texels, SS_SAMPLE_GROUP);
+        const softshi_pass thin = {
+            .pipeline = &o->pipelines.thin,
+            /* Of the ranges only the pyramid, but both are one view. */
+            .reads = SOFTSHI_HEADER | SOFTSHI_FAN_DEPTH | SOFTSHI_PYRAMID | SOFTSHI_WIDE,
+            .writes = SOFTSHI_BITS,
+            .groups = {groups < SS_DISPATCH_WIDTH ? groups : SS_DISPATCH_WIDTH, divide_up(groups, SS_DISPATCH_WIDTH),
+                       1},
+        };
+        softshi_record_pass(recorder, &thin);
+    }
     for (uint32_t level = 1; level <= layout->wide_levels; level++) {
         const ss_level_push push = {.level = level};
         const softshi_pass pass = {

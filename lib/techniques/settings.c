@@ -101,6 +101,8 @@ softshi_specialization softshi_settings_specialize(const softsh_settings *s, boo
     c.values[SS_SPEC_NORMALS] = normals;
     c.values[SS_SPEC_LAYERED] = 1;
     c.values[SS_SPEC_SPARSE] = s->sparse != 0;
+    /* The nearest depth of a block misses nothing. */
+    c.values[SS_SPEC_REFINE] = s->aggregation == SOFTSH_AGGREGATION_SAMPLED && !s->no_refinement;
     const softshi_packets packets = softshi_settings_packets(s);
     c.values[SS_SPEC_PACKET] = packets.side[SS_LIST_LARGE]   ? packets.side[SS_LIST_LARGE]
                                : packets.side[SS_LIST_SMALL] ? packets.side[SS_LIST_SMALL]

@@ -39,6 +39,7 @@
     X(CmdDispatchIndirect)                                                                                             \
     X(CmdPipelineBarrier)                                                                                              \
     X(CmdUpdateBuffer)                                                                                                 \
+    X(CmdFillBuffer)                                                                                                   \
     X(CmdCopyBuffer)                                                                                                   \
     X(CmdWriteTimestamp)
 

@@ -99,6 +99,13 @@ void softshi_record_update(softshi_recorder *recorder, uint32_t writes, VkBuffer
     recorder->context->vk.CmdUpdateBuffer(recorder->cmd, buffer, offset, size, data);
 }
 
+void softshi_record_clear(softshi_recorder *recorder, uint32_t writes, VkBuffer buffer, VkDeviceSize offset,
+                          VkDeviceSize size)
+{
+    order(recorder, 0, writes);
+    recorder->context->vk.CmdFillBuffer(recorder->cmd, buffer, offset, size, 0);
+}
+
 void softshi_record_copy(softshi_recorder *recorder, uint32_t reads, VkBuffer from, VkDeviceSize from_offset,
                          VkBuffer to, VkDeviceSize to_offset, VkDeviceSize size)
 {

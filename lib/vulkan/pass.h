@@ -16,7 +16,7 @@ typedef enum softshi_resource {
     SOFTSHI_TILES = 1 << 7,
     SOFTSHI_FILTER = 1 << 8,
     SOFTSHI_VISIBILITY = 1 << 9,
-    SOFTSHI_FOLDS = 1 << 10
+    SOFTSHI_BITS = 1 << 10 /* of what is thin, and folds */
 } softshi_resource;
 
 typedef struct softshi_recorder {
@@ -49,6 +49,9 @@ void softshi_record_pass(softshi_recorder *recorder, const softshi_pass *pass);
 /* vkCmdUpdateBuffer; size a multiple of 4 and at most 65,536. */
 void softshi_record_update(softshi_recorder *recorder, uint32_t writes, VkBuffer buffer, VkDeviceSize offset,
                            const void *data, VkDeviceSize size);
+/* Zeros; size a multiple of 4. */
+void softshi_record_clear(softshi_recorder *recorder, uint32_t writes, VkBuffer buffer, VkDeviceSize offset,
+                          VkDeviceSize size);
 void softshi_record_copy(softshi_recorder *recorder, uint32_t reads, VkBuffer from, VkDeviceSize from_offset,
                          VkBuffer to, VkDeviceSize to_offset, VkDeviceSize size);
 /* Makes everything written so far visible to compute shaders recorded later by anybody. */

@@ -106,7 +106,7 @@ void main()
     const ivec2 pixel = ss_tile_pixel(id / SS_TILE_PIXELS, id % SS_TILE_PIXELS);
 
     const ss_receiver r = ss_load_receiver(pixel);
-    const ss_samples samples = ss_receiver_samples(r, g_hi);
+    const ss_samples samples = ss_evaluated_samples(r, g_hi);
     const float half_side = 0.5 * float(SS_SIDE);
     float band;
     const ss_back_projection b = ss_back_project_from(r, ss_biased(r, samples.level, band), half_side, half_side);
@@ -138,7 +138,7 @@ void main()
     if (SS_STATS) {
         const ivec2 n = samples.hi - samples.lo + (SS_IS_PATCH ? 1 : 0);
         ss_count(SS_STAT_PRIMITIVES, uint(max(n.x, 0) * max(n.y, 0)) * ss_layers());
-        if (samples.clamped)
-            ss_count(SS_STAT_CLAMPED, 1u);
+        ss_count(SS_STAT_CLAMPED, samples.clamped ? 1u : 0u);
+        ss_count(SS_STAT_REFINED, samples.refined ? 1u : 0u);
     }
 }

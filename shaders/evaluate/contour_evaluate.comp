@@ -48,6 +48,7 @@ float at_u[N], at_v[N], at_g[N]; // g: biased
 float border[N], gradient_x[N], gradient_y[N], drift[N]; // of what counts as its own surface; border: at uv
 float horizon[N];
 float area[N], occlusion[N];
+uint refined; // those whose level is finer than the budget's
 uint touched; // those whose light edges of the contours come near enough to hide parts of
 
 ivec2 offset_of(int i)
@@ -200,6 +201,7 @@ uint load_packet(ivec2 corner, uint mask, float g_hi)
     samples.lo = ivec2(0);
     samples.hi = ivec2(-2);
     samples.clamped = false;
+    refined = 0u;
     // Loops over receivers go through bits: with a fixed number of rounds drivers would unroll them.
     for (uint todo = mask; todo != 0u; todo &= todo - 1u) {
         const int i = receiver_of(findLSB(todo));
@@ -207,7 +209,7 @@ uint load_packet(ivec2 corner, uint mask, float g_hi)
         const ss_receiver r = ss_load_receiver(pixel);
         bool empty;
         const float nearest = ss_refine_kernel(r, g_hi, empty);
-        const ss_samples own = ss_receiver_samples(r, nearest);
+        const ss_samples own = ss_evaluated_samples(r, nearest);
         float band;
         at_u[i] = r.uv.x;
         at_v[i] = r.uv.y;
@@ -228,6 +230,7 @@ uint load_packet(ivec2 corner, uint mask, float g_hi)
                 samples.lo = first ? own.lo : min(samples.lo, own.lo);
                 samples.hi = first ? own.hi : max(samples.hi, own.hi);
                 samples.clamped = own.clamped;
+                refined |= uint(own.refined) << i;
                 uv = first ? r.uv : uv;
                 gradient_lo = min(gradient_lo, r.gradient);
                 gradient_hi = max(gradient_hi, r.gradient);
@@ -316,6 +319,7 @@ void main()
         ss_count(SS_STAT_PRIMITIVES, edges * n);
         ss_count(SS_STAT_EDGES, edges);
         ss_count(SS_STAT_CLAMPED, samples.clamped ? n : 0u);
+        ss_count(SS_STAT_REFINED, uint(bitCount(refined & done)));
         ss_count(SS_STAT_VISITED, ss_visited);
         ss_count(SS_STAT_PACKETS, ALONE ? 0u : 1u);
         ss_count(SS_STAT_INCOHERENT, incoherent ? 1u : 0u);

@@ -45,8 +45,8 @@ uint load_folds(uint base, uint words, int x0, int y)
 {
     // x0 is no multiple of 32.
     const uint word = uint(x0) / 32u, shift = uint(x0) % 32u;
-    const uint low = ss_folds_at(base + uint(y) * words + word),
-               high = ss_folds_at(base + uint(y) * words + min(word + 1u, words - 1u));
+    const uint low = ss_bits_at(base + uint(y) * words + word),
+               high = ss_bits_at(base + uint(y) * words + min(word + 1u, words - 1u));
     return shift == 0u ? low : low >> shift | high << (32u - shift);
 }
 
@@ -199,7 +199,7 @@ void main()
     const ivec2 pixel = ss_tile_pixel(id / SS_TILE_PIXELS, id % SS_TILE_PIXELS);
 
     const ss_receiver r = ss_load_receiver(pixel);
-    const ss_samples samples = ss_receiver_samples(r, g_hi);
+    const ss_samples samples = ss_evaluated_samples(r, g_hi);
     const float half_side = 0.5 * float(SS_SIDE);
     float band;
     receiver = vec3(r.uv, ss_biased(r, samples.level, band));
@@ -237,7 +237,7 @@ void main()
         ss_count(SS_STAT_PRIMITIVES, edges + bridges);
         ss_count(SS_STAT_EDGES, edges);
         ss_count(SS_STAT_VISITED, ss_visited);
-        if (samples.clamped)
-            ss_count(SS_STAT_CLAMPED, 1u);
+        ss_count(SS_STAT_CLAMPED, samples.clamped ? 1u : 0u);
+        ss_count(SS_STAT_REFINED, samples.refined ? 1u : 0u);
     }
 }

@@ -13,7 +13,7 @@ layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_OCCLUDERS, std140) uniform ss_o
     ss_occluders occ;
     ss_plan plan;
 };
-layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_MADE_FOLDS, r32ui) uniform writeonly uimageBuffer made_folds;
+layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_MADE_BITS, r32ui) uniform writeonly uimageBuffer made_bits;
 
 uvec2 level_folds(uint level)
 {
@@ -40,14 +40,14 @@ bvec4 faces_light(vec4 dx, vec4 dy, vec4 x, float y, vec4 g)
 void main()
 {
     const uint word = (gl_WorkGroupID.y * SS_DISPATCH_WIDTH + gl_WorkGroupID.x) * SS_SAMPLE_GROUP + gl_LocalInvocationIndex;
-    const uint layer = gl_GlobalInvocationID.z, words = uint(occ.extent.y);
+    const uint layer = gl_GlobalInvocationID.z, words = uint(occ.extent.y), first = level_folds(0u).x;
     if (word >= words)
         return;
     uint level = 0u;
-    while (level < occ.levels.x && word >= level_folds(level + 1u).x)
+    while (level < occ.levels.x && word >= level_folds(level + 1u).x - first)
         level++;
     const uvec2 of_level = level_folds(level);
-    const uint at = word - of_level.x, y = at / of_level.y, x = 32u * (at - y * of_level.y);
+    const uint at = word + first - of_level.x, y = at / of_level.y, x = 32u * (at - y * of_level.y);
     const uint rows = (occ.size.y + (1u << level) - 1u) >> level, quads = occ.pyramid[level].w;
     const uint base = layer * occ.strides.x + occ.pyramid[level].z;
     const uint lower = base + y * quads, upper = base + min(y + 1u, rows - 1u) * quads;
@@ -75,5 +75,5 @@ void main()
         low = next_low;
         high = next_high;
     }
-    imageStore(made_folds, int(layer * words + word), uvec4(bits));
+    imageStore(made_bits, int(first + layer * words + word), uvec4(bits));
 }

@@ -37,6 +37,7 @@ struct ss_samples
     ivec2 texel_lo, texel_hi; // the texels that classification looks at
     bool covered;       // nothing was clipped
     bool clamped;       // the budget made the level coarser
+    bool refined;       // but less so, for what is thin
 };
 
 // Samples a side from which on a contour's kernel is large: four corners of an eighth of a cell are 1/32 of it.
@@ -71,14 +72,56 @@ float ss_sample_offset(uint level)
     return level == 0u ? 0.5 : 0.5 * float(1u << level) + (SS_SAMPLED ? 0.5 : 0.0);
 }
 
-// Samples that a kernel asks for, and their level.
-ss_samples ss_kernel_samples(vec4 box)
+// The texels that a kernel meets.
+struct ss_kernel_texels
+{
+    ivec2 lo, hi;
+};
+
+ss_kernel_texels ss_texels_of(vec4 box)
+{
+    const ivec2 limit = ivec2(occ.size.xy) - 1;
+    return ss_kernel_texels(clamp(ss_floor(box.xy), ivec2(0), limit), clamp(ss_floor(box.zw), ivec2(0), limit));
+}
+
+uint ss_texels_level(ss_kernel_texels t)
+{
+    return ss_extent_level(max(t.hi.x - t.lo.x, t.hi.y - t.lo.y) + 1);
+}
+
+// How many levels finer than its budget a kernel may be evaluated.
+const int SS_MOST_REFINED = 2;
+// A quad needs two samples on what is thin.
+const uint SS_THIN_LEVELS = SS_IS_FLAT ? 0u : 1u;
+
+// The level, or a finer one if samples of it may miss something thin in the kernel: docs/numerics.md, section 5.
+uint ss_refined_level(ss_kernel_texels t, uint level)
+{
+    const ivec2 size = t.hi - t.lo;
+    const int extent = max(size.x, size.y);
+    // Two texels a side of some level of the pyramid, which holds bits for the levels up to it.
+    const int above = min(max(max(findMSB(max(extent - 1, 1)) + 1, int(level + SS_THIN_LEVELS)), 2), int(occ.levels.x));
+    const uint base = occ.pyramid[above].x - occ.pyramid[2].x, row = occ.pyramid[above].y;
+    const ivec2 a = t.lo >> above, b = t.hi >> above;
+    const uint lower = base + uint(a.y) * row, upper = base + uint(b.y) * row;
+    const uint thin = ss_bits_at(lower + uint(a.x)) | ss_bits_at(lower + uint(b.x)) | ss_bits_at(upper + uint(a.x)) |
+                      ss_bits_at(upper + uint(b.x));
+    [[unroll]] for (int i = 0; i < SS_MOST_REFINED; i++) {
+        const uint finer = max(level, 1u) - 1u;
+        const bool refine = (thin >> (level + SS_THIN_LEVELS) & 1u) != 0u && level > 0u && finer >= frame.quality.y && uint(extent >> finer) < ss_most_samples();
+        level = refine ? finer : level;
+    }
+    return level;
+}
+
+// Samples of a level that a kernel asks for.
+ss_samples ss_level_samples(vec4 box, uint level)
 {
     ss_samples s;
     const ivec2 limit = ivec2(occ.size.xy) - 1;
-    const ivec2 first = clamp(ss_floor(box.xy), ivec2(0), limit), last = clamp(ss_floor(box.zw), ivec2(0), limit);
-    s.level = ss_extent_level(max(last.x - first.x, last.y - first.y) + 1);
+    s.level = level;
     s.clamped = s.level > frame.quality.y;
+    s.refined = false;
     const float t = float(1u << s.level);
     const vec2 a = (box.xy - ss_sample_offset(s.level)) / t, b = (box.zw - ss_sample_offset(s.level)) / t;
     const ivec2 lo = ss_floor(SS_IS_PATCH ? a + 0.5 : a), hi = SS_IS_PATCH ? ss_floor(b + 0.5) : ss_floor(b) + 1;
@@ -92,6 +135,11 @@ ss_samples ss_kernel_samples(vec4 box)
     s.texel_lo = (inner ? clamp(ss_floor(a + 0.5), ivec2(0), top) : s.lo) << int(s.level);
     s.texel_hi = min((((inner ? clamp(ss_floor(b + 0.5), ivec2(0), top) : s.hi) + 1) << int(s.level)) - 1, limit);
     return s;
+}
+
+ss_samples ss_kernel_samples(vec4 box)
+{
+    return ss_level_samples(box, ss_texels_level(ss_texels_of(box)));
 }
 
 // Half the thickness of the band around the receiver's plane that counts as the receiver's own surface, in texels' rise. A
@@ -117,10 +165,26 @@ bool ss_is_off_plane(ss_receiver r, float height, float band)
     return !(r.side * height <= band);
 }
 
-// The samples of a receiver's kernel for occluders up to g_hi.
+// A receiver's kernel for occluders up to g_hi.
+vec4 ss_receiver_box(ss_receiver r, float g_hi)
+{
+    return ss_kernel_box(r.uv, r.uv, r.g, occ.light.w - occ.light.z * r.g, g_hi);
+}
+
 ss_samples ss_receiver_samples(ss_receiver r, float g_hi)
 {
-    return ss_kernel_samples(ss_kernel_box(r.uv, r.uv, r.g, occ.light.w - occ.light.z * r.g, g_hi));
+    return ss_kernel_samples(ss_receiver_box(r, g_hi));
+}
+
+// What is evaluated of them: classification takes the level of the budget, whose samples stand for more.
+ss_samples ss_evaluated_samples(ss_receiver r, float g_hi)
+{
+    const vec4 box = ss_receiver_box(r, g_hi);
+    const ss_kernel_texels t = ss_texels_of(box);
+    const uint level = ss_texels_level(t), evaluated = SS_REFINE ? ss_refined_level(t, level) : level;
+    ss_samples s = ss_level_samples(box, evaluated);
+    s.refined = evaluated < level;
+    return s;
 }
 
 // Whether all samples occlude, given that those do which classification looks at: nearer than `least` in the first layer. The rim

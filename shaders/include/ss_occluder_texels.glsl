@@ -7,7 +7,7 @@ layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_DEPTHS) uniform textureBuffer d
 layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_DEPTH_QUADS) uniform textureBuffer depth_quads;
 layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_RANGES) uniform textureBuffer ranges;
 
-layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_FOLDS) uniform utextureBuffer folds;
+layout(set = SS_SET_OCCLUDERS, binding = SS_BIND_BITS) uniform utextureBuffer bits;
 
 // Four fan depths of a row.
 vec4 ss_depth_quad_at(uint quad)
@@ -26,10 +26,9 @@ vec2 ss_range_at(uint i)
     return texelFetch(ranges, int(i)).xy;
 }
 
-// 32 cells of a row.
-uint ss_folds_at(uint word)
+uint ss_bits_at(uint word)
 {
-    return texelFetch(folds, int(word)).x;
+    return texelFetch(bits, int(word)).x;
 }
 
 #endif

@@ -41,8 +41,10 @@ typedef struct ss_ivec4 {
 #define SS_BIND_DEPTHS 4      /* uniform texels, where they are read: single fan depths */
 #define SS_BIND_DEPTH_QUADS 5 /* four of them */
 #define SS_BIND_RANGES 6
-#define SS_BIND_FOLDS 7      /* bits of cells that fold, of each layer and level: 32 of a row to a word */
-#define SS_BIND_MADE_FOLDS 8 /* storage texels, where they are written */
+#define SS_BIND_BITS 7      /* levels that are too coarse for what is thin: a word for each texel of the pyramid from level 2 on,
+                               of all layers together; then bits of cells that fold, of each layer and level: 32 of a row to a
+                               word */
+#define SS_BIND_MADE_BITS 8 /* storage texels, where they are written */
 #define SS_OCCLUDER_BINDINGS 9
 
 #define SS_SET_IO 1
@@ -72,7 +74,8 @@ typedef struct ss_ivec4 {
 #define SS_SPEC_BLOCK 13   /* pixels a side of the blocks that are classified: 3 or 4 */
 #define SS_SPEC_SPLIT 14   /* 1: 4 x 4 packets that are not of one contour go on as 2 x 2 ones, before single pixels */
 #define SS_SPEC_SUBLIGHTS 15 /* 1: visibility goes to a plane of its own, to be combined */
-#define SS_SPEC_COUNT 16
+#define SS_SPEC_REFINE 16 /* 1: finer levels where a kernel's level is too coarse for what is thin */
+#define SS_SPEC_COUNT 17
 
 #define SS_PRIMITIVE_PATCH 0
 #define SS_PRIMITIVE_PATCH_EXTENDED 1
@@ -85,7 +88,7 @@ typedef struct ss_ivec4 {
 #define SS_TILE_PIXELS 64
 #define SS_EVALUATE_GROUP 64
 #define SS_MAX_LEVELS 16      /* levels of a 32768 texel map */
-#define SS_SAMPLE_GROUP 64    /* quads that a group of hierarchy_sample makes, words that one of hierarchy_fold makes */
+#define SS_SAMPLE_GROUP 64    /* of hierarchy_sample, whose invocations make a quad each, and the like */
 #define SS_WIDEN_ROWS 4       /* that one invocation of hierarchy_widen makes */
 #define SS_TILE_REFINEMENTS 2 /* of kernels: a third pays for pixels only */
 #define SS_MAX_REFINEMENTS 3
@@ -127,7 +130,7 @@ SS_STRUCT(ss_occluders)
     SS_UVEC4 levels;    /* top of the pyramid, join level, wide levels there is room for, their width */
     SS_UVEC4 strides;   /* per layer: quads of fan depths, texels of the pyramid; first texel of wide level 1, texels per
                            wide level */
-    SS_UVEC4 folds[SS_MAX_LEVELS / 2]; /* two levels each: first word, words in a row */
+    SS_UVEC4 folds[SS_MAX_LEVELS / 2]; /* two levels each: first word of the first layer, words in a row */
     /* Per level: first texel and width of its ranges, which level 0 has none of; first quad of its sampled fan depths, quads
      * in a row of them. */
     SS_UVEC4 pyramid[SS_MAX_LEVELS];
@@ -183,6 +186,7 @@ SS_STRUCT_END(ss_control);
 #define SS_STAT_DIVERGED 12
 #define SS_STAT_EDGES 13
 #define SS_STAT_VISITED 14
+#define SS_STAT_REFINED 15
 
 /* Push constants of the passes that need some. */
 SS_STRUCT(ss_convert_push)

@@ -175,6 +175,8 @@ COMMAND(CmdDispatchIndirect, (VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize
 COMMAND(CmdUpdateBuffer,
         (VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset, VkDeviceSize size, const void *data),
         (cmd, buffer, offset, size, data))
+COMMAND(CmdFillBuffer, (VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset, VkDeviceSize size, uint32_t data),
+        (cmd, buffer, offset, size, data))
 COMMAND(CmdCopyBuffer, (VkCommandBuffer cmd, VkBuffer from, VkBuffer to, uint32_t count, const VkBufferCopy *regions),
         (cmd, from, to, count, regions))
 COMMAND(CmdWriteTimestamp, (VkCommandBuffer cmd, VkPipelineStageFlagBits stage, VkQueryPool pool, uint32_t query),
@@ -289,6 +291,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL wrap_AllocateDescriptorSets(VkDevice devic
     X(CmdDispatchIndirect)                                                                                             \
     X(CmdPipelineBarrier)                                                                                              \
     X(CmdUpdateBuffer)                                                                                                 \
+    X(CmdFillBuffer)                                                                                                   \
     X(CmdCopyBuffer)                                                                                                   \
     X(CmdWriteTimestamp)                                                                                               \
     X(SetDebugUtilsObjectNameEXT)                                                                                      \

@@ -67,10 +67,12 @@ void readback_create(const lamp *l, readback *out)
             for (uint32_t x = 0; x < out->width; x++)
                 out->fan_depth[((size_t)layer * out->height + y) * out->width + x] =
                     readback_sample(out, layer, 0, x, y);
+    memcpy(out->a, &header->a, sizeof out->a);
+    out->delta = header->light.z;
+    out->epsilon = header->light.w;
     memcpy(out->fold_levels, layout.folds, sizeof out->fold_levels);
     out->layer_fold_words = (size_t)layout.layer_fold_words;
-    if (o->outlines)
-        out->folds = copy_range(&o->block, o->layout.fold_bits.offset, o->layout.fold_bits.size);
+    out->bits = copy_range(&o->block, o->layout.bits.offset, o->layout.bits.size);
     out->ranges = copy_range(&o->block, o->layout.ranges.offset, o->layout.ranges.size);
     free(header);
     free(plan);
@@ -81,7 +83,7 @@ void readback_destroy(readback *r)
     free(r->samples);
     free(r->fan_depth);
     free(r->ranges);
-    free(r->folds);
+    free(r->bits);
 }
 
 reference_range readback_pyramid(const readback *r, uint32_t layer, uint32_t level, uint32_t x, uint32_t y)
@@ -99,7 +101,13 @@ float readback_sample(const readback *r, uint32_t layer, uint32_t level, uint32_
 bool readback_folds(const readback *r, uint32_t layer, uint32_t level, uint32_t x, uint32_t y)
 {
     const size_t words = (reference_hsm_size(r->width, level) + 31) / 32;
-    return r->folds[layer * r->layer_fold_words + r->fold_levels[level] + y * words + x / 32] >> x % 32 & 1;
+    return r->bits[layer * r->layer_fold_words + r->fold_levels[level] + y * words + x / 32] >> x % 32 & 1;
+}
+
+uint32_t readback_thin(const readback *r, uint32_t level, uint32_t x, uint32_t y)
+{
+    return r->bits[r->pyramid_offsets[level] - r->pyramid_offsets[2] +
+                   (size_t)y * reference_hsm_size(r->width, level) + x];
 }
 
 reference_range readback_wide(const readback *r, uint32_t level, uint32_t x, uint32_t y)

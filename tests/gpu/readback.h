@@ -14,7 +14,8 @@ typedef struct readback {
     uint32_t quads[16]; /* of fan depths, where levels begin */
     size_t layer_quads;
     float *samples;                   /* as the device has them */
-    uint32_t *folds, fold_levels[16]; /* bits of cells, where levels begin; NULL without */
+    float a[4], delta, epsilon;     /* of the light */
+    uint32_t *bits, fold_levels[16]; /* words; where the levels' folds begin */
     size_t layer_fold_words;
     float *fan_depth; /* of level 0, layer after layer */
     reference_range *ranges;
@@ -29,6 +30,8 @@ reference_range readback_pyramid(const readback *r, uint32_t layer, uint32_t lev
 float readback_sample(const readback *r, uint32_t layer, uint32_t level, uint32_t x, uint32_t y);
 /* Whether cell (x, y) of a level folds. */
 bool readback_folds(const readback *r, uint32_t layer, uint32_t level, uint32_t x, uint32_t y);
+/* Levels whose samples may miss something under texel (x, y) of the pyramid's level, from 2 on, a bit each. */
+uint32_t readback_thin(const readback *r, uint32_t level, uint32_t x, uint32_t y);
 /* Over all layers, at the resolution of level `join`, of wide level `level`, which counts from 1. */
 reference_range readback_wide(const readback *r, uint32_t level, uint32_t x, uint32_t y);
 
