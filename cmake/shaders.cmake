@@ -15,6 +15,7 @@ set(SOFTSHADOW_SHADERS
     evaluate/bitmask_evaluate
     evaluate/contour_evaluate
     evaluate/outline_evaluate
+    evaluate/separate_evaluate
     evaluate/interpolate
     evaluate/interpolate_blocks
     evaluate/hard_evaluate

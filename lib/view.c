@@ -65,6 +65,7 @@ static softsh_result create_pipelines(softsh_view *v)
     softsh_result result = softshi_classify_create(v, &constants);
     if (result == SOFTSH_SUCCESS)
         result = softshi_settings_in_packets(&v->settings) ? softshi_contour_create(v, &constants)
+                 : softshi_settings_separate(&v->settings) ? softshi_separate_create(v, &constants)
                  : v->settings.outline                     ? softshi_outline_create(v, &constants)
                                                            : softshi_bitmask_create(v, &constants);
     if (result == SOFTSH_SUCCESS && v->settings.sparse)

@@ -55,7 +55,7 @@ static softsh_result check(const softsh_view *v, const softsh_visibility_info *i
         return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT,
                             "softsh_visibility_info::stats_offset is %llu, expected a multiple of 4",
                             (unsigned long long)info->stats_offset);
-    if (v->settings.outline && !info->occluders->light.point && !info->occluders->outlines)
+    if (softshi_settings_need_folds(&v->settings) && !info->occluders->light.point && !info->occluders->outlines)
         return softshi_fail(
             context, SOFTSH_ERROR_INVALID_ARGUMENT,
             "softsh_visibility_info::occluders was created without outlines, which the view's settings need");

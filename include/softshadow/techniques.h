@@ -52,6 +52,16 @@ typedef enum softsh_merge {
     SOFTSH_MERGE_MAXIMUM = 2  /* the darkest single layer, as Atty et al. 2006 do for front and back faces */
 } softsh_merge;
 
+/* Where neighbouring samples that both occlude are taken for one surface; contour only. What is cut apart ends half a step
+ * beyond its last sample, at its own depth, as all contours do. */
+typedef enum softsh_reconstruction {
+    SOFTSH_RECONSTRUCTION_DEFAULT = 0, /* joined */
+    SOFTSH_RECONSTRUCTION_JOINED = 1,  /* everywhere: one layer of a map casts a shadow without gaps */
+    SOFTSH_RECONSTRUCTION_FOLDS = 2,   /* unless the receiver sees them the other way round: what is near lies in front of what
+                                          is far, as seen from the light's centre. Slower, the least error */
+    SOFTSH_RECONSTRUCTION_SECOND_DIFFERENCES = 3 /* unless fan depth jumps: leaks light where solid things overlap */
+} softsh_reconstruction;
+
 /* Neighbouring pixels that share one search for contours; contour only, see Yang et al. 2009. Packets that do not pay,
  * or are not of one contour, are evaluated pixel by pixel. With `sparse`, packets are of every second pixel of 4 x 4,
  * and of what is left of them. No result depends on it but for rounding, and with 3X3, whose pixels are classified in
@@ -92,6 +102,8 @@ typedef struct softsh_settings {
                                filter_passes */
     softsh_packet packet;   /* contour only */
     softsh_packet_cost packet_cost; /* contour only; `softshadow-bench tune` measures it */
+    softsh_reconstruction reconstruction; /* contour only; other than joined: without packets, for sampled depth and on occluders
+                                             with `outlines` */
     uint32_t outline;      /* nonzero: of microquads that cannot fold, only the outline of all of them is projected; the
                               result is the same. For area and bitmask, microquads, sampled depth and patterns up to
                               16 x 16, without filter_passes, on occluders with `outlines`; contour ignores it */

@@ -165,7 +165,8 @@ typedef struct softsh_occluders_info {
     uint32_t max_layers;   /* 0 means 1; at most SOFTSH_MAX_LAYERS */
     softsh_accel accel;
     uint32_t ysm_join;       /* the YSM's full-resolution part has at most this many texels a side; 0 means 256 */
-    uint32_t outlines;       /* nonzero: views with softsh_settings::outline may use this light; a bit a texel */
+    uint32_t outlines;       /* nonzero: views with softsh_settings::outline or reconstruction may use this light; a
+                                bit a texel */
     uint32_t max_recordings; /* the last so many builds may be pending or submitted again; 0 means 4, at most 1024 */
     softsh_memory_mode memory_mode;
     const char *name; /* debug name; copied; may be NULL */

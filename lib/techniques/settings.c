@@ -36,6 +36,8 @@ softsh_settings softshi_settings_resolve(const softsh_settings *settings, bool s
         s.primitive = SOFTSH_PRIMITIVE_MICROQUAD;
     if (s.aggregation == SOFTSH_AGGREGATION_DEFAULT)
         s.aggregation = SOFTSH_AGGREGATION_SAMPLED;
+    if (s.reconstruction == SOFTSH_RECONSTRUCTION_DEFAULT)
+        s.reconstruction = SOFTSH_RECONSTRUCTION_JOINED;
     if (s.merge == SOFTSH_MERGE_DEFAULT)
         s.merge = s.technique == SOFTSH_TECHNIQUE_BITMASK ? SOFTSH_MERGE_UNION : SOFTSH_MERGE_MAXIMUM;
     if (s.technique != SOFTSH_TECHNIQUE_BITMASK)
@@ -47,14 +49,24 @@ softsh_settings softshi_settings_resolve(const softsh_settings *settings, bool s
     return s;
 }
 
+bool softshi_settings_separate(const softsh_settings *s)
+{
+    return s->technique == SOFTSH_TECHNIQUE_CONTOUR && s->reconstruction != SOFTSH_RECONSTRUCTION_JOINED;
+}
+
+bool softshi_settings_need_folds(const softsh_settings *s)
+{
+    return s->outline || softshi_settings_separate(s);
+}
+
 bool softshi_settings_in_packets(const softsh_settings *s)
 {
-    return s->technique == SOFTSH_TECHNIQUE_CONTOUR;
+    return s->technique == SOFTSH_TECHNIQUE_CONTOUR && !softshi_settings_separate(s);
 }
 
 softshi_packets softshi_settings_packets(const softsh_settings *s)
 {
-    softshi_packets p = {.side = {[SS_LIST_PIXELS] = 1}, .block = 4};
+    softshi_packets p = {.side = {[SS_LIST_PIXELS] = 1}, .block = softshi_settings_in_packets(s) ? 4 : 1};
     if (!softshi_settings_in_packets(s) || s->packet == SOFTSH_PACKET_1X1)
         return p;
     if (s->sparse) {

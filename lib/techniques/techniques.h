@@ -12,6 +12,8 @@ softsh_result softshi_bitmask_create(softsh_view *view, const softshi_specializa
 
 softsh_result softshi_outline_create(softsh_view *view, const softshi_specialization *constants);
 
+softsh_result softshi_separate_create(softsh_view *view, const softshi_specialization *constants);
+
 softsh_result softshi_contour_create(softsh_view *view, const softshi_specialization *constants);
 
 /* What is on the lists, by whichever technique the view was created with. Round 1: what interpolation left. */

@@ -138,7 +138,7 @@ void main()
     if (state == SS_STATE_PIXELS) {
         const uint i = atomicAdd(control.pixels_args.w, 1u);
         // A group of the next pass has the pixels of one tile, or the blocks of several.
-        const uint group = SS_IS_CONTOUR ? ((i + 1u) * SS_TILE_BLOCKS - 1u) / SS_EVALUATE_GROUP : i;
+        const uint group = ((i + 1u) * SS_TILE_BLOCKS - 1u) / SS_EVALUATE_GROUP;
         atomicMax(control.pixels_args.x, min(group + 1u, SS_DISPATCH_WIDTH));
         atomicMax(control.pixels_args.y, group / SS_DISPATCH_WIDTH + 1u);
         tiles[ss_undecided_slot(i)] = tile;

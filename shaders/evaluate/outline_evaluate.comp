@@ -20,6 +20,7 @@
 #include "ss_edge.glsl"
 #include "ss_packet.glsl"
 #include "ss_strip.glsl"
+#include "ss_folds.glsl"
 
 layout(local_size_x = SS_EVALUATE_GROUP) in;
 layout(push_constant) uniform ss_push
@@ -41,25 +42,16 @@ bool any_occludes; // any sample of the kernel
 #define smooth_quads ss_strip
 #define bridge_quads ss_strip_unknown
 
-uint load_folds(uint base, uint words, int x0, int y)
-{
-    // x0 is no multiple of 32.
-    const uint word = uint(x0) / 32u, shift = uint(x0) % 32u;
-    const uint low = ss_bits_at(base + uint(y) * words + word),
-               high = ss_bits_at(base + uint(y) * words + min(word + 1u, words - 1u));
-    return shift == 0u ? low : low >> shift | high << (32u - shift);
-}
-
 // From samples to quads: the rows that outlines run through, and those with bridges. `below` is the row of smooth quads under the
 // strip and becomes the last one in it.
-void find_quads(uint base, uint words, ivec2 last, int x0, int y0, int count, uint columns, inout uint below, out uint outlines,
+void find_quads(ss_folds folds, int x0, int y0, int count, uint columns, inout uint below, out uint outlines,
                 out uint bridged)
 {
     uint before = below;
     outlines = bridged = 0u;
     for (int j = 0; j < count; j++) {
         const uint row = ss_strip[j] & ss_strip[j + 1], quads = row & row >> 1 & 0x7fffffffu;
-        const uint fold = load_folds(base, words, x0, min(y0 + j, last.y));
+        const uint fold = ss_folds_of_row(folds, x0, y0 + j);
         const uint smooth_row = quads & ~fold;
         bridge_quads[j] = quads & fold & columns;
         const uint sides = (smooth_row ^ before | smooth_row ^ smooth_row << 1) & columns;
@@ -87,14 +79,14 @@ float edge_area(vec2 from, vec2 to)
 // Sides between smooth quads and others, one after the other, and for each the lines of samples it crosses.
 void add_outline(ss_grid grid, int x0, int y0, uint rows, uint columns, uint below)
 {
-    uint across = 0u, along = 0u, sign = 0u;
+    uint across = 0u, along = 0u;
     uint smooth_row = 0u, smooth_below = 0u;
-    int row = 0, line = 0, end = 0;
-    vec2 low = vec2(0.0);
-    float slope = 0.0;
-    while ((rows != 0u || (across | along) != 0u || line < end) && rounds < MOST_ROUNDS) {
+    int row = 0;
+    ss_crossing crossing = ss_no_crossing();
+    while ((rows != 0u || (across | along) != 0u || crossing.line < crossing.end) && rounds < MOST_ROUNDS) {
         rounds++;
-        if ((across | along) == 0u && line >= end) {
+        const bool idle = crossing.line >= crossing.end;
+        if ((across | along) == 0u && idle) {
             row = findLSB(rows);
             rows &= rows - 1u;
             smooth_row = smooth_quads[row];
@@ -102,7 +94,7 @@ void add_outline(ss_grid grid, int x0, int y0, uint rows, uint columns, uint bel
             across = (smooth_row ^ smooth_below) & columns;
             along = (smooth_row ^ smooth_row << 1) & columns;
         }
-        if (line >= end) {
+        if (idle) {
             const bool is_across = across != 0u;
             const int k = findLSB(is_across ? across : along);
             across &= across - uint(is_across);
@@ -116,21 +108,11 @@ void add_outline(ss_grid grid, int x0, int y0, uint rows, uint columns, uint bel
             edges++;
             if (SS_AREA)
                 outline_area += edge_area(from, to);
-            if (SS_PATTERN_SIDE != 0) {
-                const bool rises = from.y <= to.y;
-                const vec2 high = rises ? to : from;
-                low = rises ? from : to;
-                sign = rises ? 1u : 0xffffffffu;
-                slope = (high.x - low.x) / (high.y - low.y);
-                line = ss_winding_from(low.y);
-                // Nothing is left of an edge that is left of the light.
-                end = max(low.x, high.x) > 0.0 ? ss_winding_from(high.y) : line;
-            }
+            if (SS_PATTERN_SIDE != 0)
+                crossing = ss_winding_edge(from, to);
         }
-        if (SS_PATTERN_SIDE != 0 && line < end) {
-            ss_winding_add(line, low.x + (ss_winding_height(line) - low.y) * slope, sign);
-            line++;
-        }
+        if (SS_PATTERN_SIDE != 0 && crossing.line < crossing.end)
+            ss_winding_step(crossing);
     }
 }
 
@@ -166,9 +148,7 @@ void add_layer(ss_packet packet, uint layer, ss_samples samples)
     const ss_grid grid = ss_load_grid(layer, samples.level);
     // Blocks of 4 x 4 samples are the texels two levels up.
     const ss_grid blocks = ss_load_grid(layer, min(samples.level + 2u, occ.levels.x));
-    const uvec4 two_levels = occ.folds[samples.level / 2u];
-    const uvec2 folds_of_level = samples.level % 2u == 0u ? two_levels.xy : two_levels.zw;
-    const uint folds_base = layer * uint(occ.extent.y) + folds_of_level.x;
+    const ss_folds folds = ss_load_folds(layer, samples.level);
     int x0 = start, y0 = samples.lo.y, skip = samples.lo.x - start;
     uint below = 0u;
     while (x0 + skip <= samples.hi.x && samples.lo.y <= samples.hi.y) {
@@ -176,7 +156,7 @@ void add_layer(ss_packet packet, uint layer, ss_samples samples)
         const uint columns = 0x7fffffffu & (0xffffffffu << skip), under = below;
         ss_fill_strip(packet, true, grid, blocks, in_blocks, samples.lo, samples.hi, x0, y0, count);
         uint outlines, bridged;
-        find_quads(folds_base, folds_of_level.y, grid.last, x0, y0, count, columns, below, outlines, bridged);
+        find_quads(folds, x0, y0, count, columns, below, outlines, bridged);
         add_outline(grid, x0, y0, outlines, columns, under);
         add_bridges(grid, x0, y0, bridged);
         y0 += SS_STRIP_ROWS;
@@ -212,13 +192,13 @@ void main()
     any_occludes = false;
     rounds = edges = bridges = 0u;
     ss_mask_clear();
-    ss_winding_clear();
+    ss_winding_clear(0u);
     outline_area = bridge_area = 0.0;
     for (uint layer = 0u; layer < ss_layers(); layer++) {
         add_layer(packet, layer, samples);
         if (SS_PATTERN_SIDE != 0) {
             ss_winding_to_mask(mirrored);
-            ss_winding_clear();
+            ss_winding_clear(0u);
         }
         if (SS_MERGE_MAXIMUM || layer + 1u == ss_layers()) {
             if (SS_PATTERN_SIDE != 0)

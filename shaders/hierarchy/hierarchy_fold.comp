@@ -75,5 +75,8 @@ void main()
         low = next_low;
         high = next_high;
     }
+    // Cells that reach out of the map fold nowhere.
+    const uint columns = (occ.size.x + (1u << level) - 1u) >> level, cells = min(max(columns - 1u, x) - x, 32u);
+    bits &= y + 1u < rows ? cells == 32u ? 0xffffffffu : (1u << cells) - 1u : 0u;
     imageStore(made_bits, int(first + layer * words + word), uvec4(bits));
 }

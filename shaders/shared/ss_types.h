@@ -71,17 +71,22 @@ typedef struct ss_ivec4 {
 #define SS_SPEC_LAYERED 10 /* 1: perhaps more than one layer */
 #define SS_SPEC_SPARSE 11  /* 1: some pixels are interpolated */
 #define SS_SPEC_PACKET 12  /* pixels a side of a packet that one invocation evaluates: 1 to 4 */
-#define SS_SPEC_BLOCK 13   /* pixels a side of the blocks that are classified: 3 or 4 */
+#define SS_SPEC_BLOCK 13   /* pixels a side of the blocks that are classified: 3 or 4; 1: single pixels */
 #define SS_SPEC_SPLIT 14   /* 1: 4 x 4 packets that are not of one contour go on as 2 x 2 ones, before single pixels */
 #define SS_SPEC_SUBLIGHTS 15 /* 1: visibility goes to a plane of its own, to be combined */
 #define SS_SPEC_REFINE 16 /* 1: finer levels where a kernel's level is too coarse for what is thin */
-#define SS_SPEC_COUNT 17
+#define SS_SPEC_RECONSTRUCTION 17 /* SS_RECONSTRUCTION_* */
+#define SS_SPEC_COUNT 18
 
 #define SS_PRIMITIVE_PATCH 0
 #define SS_PRIMITIVE_PATCH_EXTENDED 1
 #define SS_PRIMITIVE_QUAD 2
 #define SS_PRIMITIVE_QUAD_RECTANGLE 3
 #define SS_PRIMITIVE_CONTOUR 4
+
+/* Where neighbours that occlude are cut apart. */
+#define SS_RECONSTRUCTION_FOLDS 0
+#define SS_RECONSTRUCTION_SECOND_DIFFERENCES 1
 
 #define SS_TILE_X 8 /* pixels of a tile */
 #define SS_TILE_Y 8

@@ -259,6 +259,10 @@ static void view_errors(void **state)
     BAD(VIEW, in.settings.budget = 4097, INVALID, "softsh_settings::budget");
     BAD(VIEW, in.settings.min_level = 14, INVALID, "softsh_settings::min_level");
     BAD(VIEW, in.settings.packet = (softsh_packet)6, INVALID, "softsh_settings::packet");
+    BAD(VIEW, in.settings.reconstruction = (softsh_reconstruction)4, INVALID, "softsh_settings::reconstruction");
+    BAD(VIEW, in.settings.technique = SOFTSH_TECHNIQUE_CONTOUR;
+        in.settings.reconstruction = SOFTSH_RECONSTRUCTION_FOLDS;
+        in.settings.aggregation = SOFTSH_AGGREGATION_NEAREST, INVALID, "softsh_settings::reconstruction");
     BAD(VIEW, in.settings.technique = SOFTSH_TECHNIQUE_BITMASK; in.settings.outline = 1;
         in.settings.primitive = SOFTSH_PRIMITIVE_MICROPATCH, INVALID, "softsh_settings::outline");
     BAD(VIEW, in.settings.technique = SOFTSH_TECHNIQUE_AREA; in.settings.outline = 1;
@@ -499,6 +503,14 @@ static void mismatches(void **state)
     with.view = scene_view(with.context, &valid);
     BAD(VISIBILITY, (void)in, INVALID, "outlines");
     softsh_view_destroy(with.view);
+    valid.settings.technique = SOFTSH_TECHNIQUE_CONTOUR;
+    valid.settings.reconstruction = SOFTSH_RECONSTRUCTION_FOLDS;
+    valid.settings.aggregation = SOFTSH_AGGREGATION_SAMPLED;
+    with.view = scene_view(with.context, &valid);
+    BAD(VISIBILITY, (void)in, INVALID, "outlines");
+    softsh_view_destroy(with.view);
+    valid.settings.technique = SOFTSH_TECHNIQUE_BITMASK;
+    valid.settings.reconstruction = SOFTSH_RECONSTRUCTION_DEFAULT;
     valid.view.normals = 1;
     valid.settings.outline = 0;
 

@@ -59,6 +59,10 @@ static void settings_are_silent(void **state)
             in.settings.pattern = i % 3;
             in.settings.filter_passes = 0;
         }
+        if (in.occluders.outlines && in.settings.technique == SOFTSH_TECHNIQUE_CONTOUR) {
+            in.settings.reconstruction = 2 + i / 4 % 2;
+            in.settings.aggregation = SOFTSH_AGGREGATION_SAMPLED;
+        }
         if (in.view.sublights && lamp != LAMP_DIRECTIONAL) {
             for (uint32_t m = 0; m < in.build.map_count; m++) {
                 in.maps[m].role = SOFTSH_MAP_SUBLIGHT;

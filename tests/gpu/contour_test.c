@@ -252,13 +252,92 @@ static void most_edges(void **state)
     }
 }
 
+/* Whether the segment between two points meets a rectangle parallel to z = 0. */
+static bool meets(const double from[3], const double to[3], const reference_surface *s)
+{
+    const double t = (s->center[2] - from[2]) / (to[2] - from[2]);
+    return t > 0.0 && t < 1.0 && fabs(from[0] + t * (to[0] - from[0]) - s->center[0]) < s->u[0] &&
+           fabs(from[1] + t * (to[1] - from[1]) - s->center[1]) < s->v[1];
+}
+
+/* A plate over another one, which it hides from the map in part: only cut apart do both have their shadows. Against
+ * rays to 32 x 32 points of the light. */
+static void surfaces_apart(void **state)
+{
+    enum { SIDE = 48, MAP = 128 };
+    static const softsh_reconstruction how[] = {SOFTSH_RECONSTRUCTION_JOINED, SOFTSH_RECONSTRUCTION_FOLDS,
+                                                SOFTSH_RECONSTRUCTION_SECOND_DIFFERENCES};
+    static const reference_surface surfaces[3] = {
+        {.infinite = true, .center = {0, 0, -10}, .u = {1, 0, 0}, .v = {0, 1, 0}},
+        {.center = {-0.2, 0, -3}, .u = {0.5, 0, 0}, .v = {0, 0.5, 0}},
+        {.center = {1.2, 0, -7.5}, .u = {0.75, 0, 0}, .v = {0, 0.75, 0}},
+    };
+    static float visibility[SIDE * SIDE], again[SIDE * SIDE];
+    static double truth[SIDE * SIDE];
+    const double nowhere[3] = {0, 0, 0}, up[3] = {0, 1, 0}, floor_at[3] = {0, 0, -10}, at[3] = {0, 0, -8};
+    double error[3] = {0};
+    scene s;
+    lamp l;
+    eye e;
+    (void)state;
+    memset(&s, 0, sizeof s);
+    s.lamp.light = (softsh_light){.struct_size = sizeof s.lamp.light, .half_u = {1, 0, 0}, .half_v = {0, 1, 0}};
+    s.lamp.place = (placement){.width = MAP, .height = MAP};
+    s.lamp.layer_count = 1;
+    s.lamp.outlines = true;
+    s.eye.place = (placement){.width = SIDE, .height = SIDE};
+    reference_look_at(nowhere, floor_at, up, s.lamp.view);
+    reference_perspective((const double[4]){-0.5, 0.5, -0.5, 0.5}, 1.0, 30.0, REFERENCE_DEPTH_NORMAL,
+                          s.lamp.layers[0].projection);
+    reference_look_at(at, floor_at, up, s.eye.view);
+    reference_orthographic((const double[4]){-4, 4, -4, 4}, 0.1, 10.0, REFERENCE_DEPTH_NORMAL, s.eye.projection);
+    scene_cast(&s, surfaces, 3);
+    s.eye.normals = NULL;
+    lamp_create(&s.lamp, &l);
+    eye_create(&s.eye, &e);
+    reference_camera camera;
+    eye_reference(&s.eye, &camera);
+    for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+        double floor_point[3], derivative[3];
+        assert_true(
+            reference_camera_unproject(&camera, i % SIDE, i / SIDE, (double)s.depth[i], floor_point, derivative));
+        truth[i] = 0.0;
+        for (int k = 0; k < 1024; k++) {
+            const double light[3] = {(k % 32 + 0.5) / 16.0 - 1.0, (k / 32 + 0.5) / 16.0 - 1.0, 0.0};
+            truth[i] += !meets(floor_point, light, &surfaces[1]) && !meets(floor_point, light, &surfaces[2]);
+        }
+        truth[i] /= 1024.0;
+    }
+    for (int k = 0; k < 3; k++) {
+        for (uint32_t hierarchy = 0; hierarchy < 2; hierarchy++) {
+            const sight_info info = {.settings = {.technique = SOFTSH_TECHNIQUE_CONTOUR,
+                                                  .reconstruction = how[k],
+                                                  .no_hierarchy = !hierarchy},
+                                     .width = SIDE,
+                                     .height = SIDE};
+            sight view;
+            sight_create(&info, &view);
+            sight_run(&view, &l, &e, NULL, hierarchy ? again : visibility, NULL);
+            sight_destroy(&view);
+        }
+        for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+            error[k] += fabs((double)visibility[i] - truth[i]) / (SIDE * SIDE);
+            assert_true(fabs((double)visibility[i] - (double)again[i]) <= 1.0 / 32.0);
+        }
+    }
+    print_message("mean error joined %.4f, cut at folds %.4f, by second differences %.4f\n", error[0], error[1],
+                  error[2]);
+    assert_true(error[1] < 0.85 * error[0] && error[2] < 0.7 * error[0]);
+    eye_destroy(&e);
+    lamp_destroy(&l);
+    scene_destroy(&s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(awkward_occluders),
-        cmocka_unit_test(borders),
-        cmocka_unit_test(wide_kernels),
-        cmocka_unit_test(most_edges),
+        cmocka_unit_test(awkward_occluders), cmocka_unit_test(borders),        cmocka_unit_test(wide_kernels),
+        cmocka_unit_test(most_edges),        cmocka_unit_test(surfaces_apart),
     };
     return cmocka_run_group_tests(tests, fixture_setup, fixture_teardown);
 }

@@ -43,8 +43,8 @@ static void bits_say_what_folds(void **state)
                                                          .level = level};
                     reference_dual_grid grid;
                     assert_true(reference_dual_grid_create(&grid, &map, &settings, g));
-                    for (uint32_t y = 0; y + 1 < grid.rows; y++)
-                        for (uint32_t x = 0; x + 1 < grid.columns; x++) {
+                    for (uint32_t y = 0; y < grid.rows; y++)
+                        for (uint32_t x = 0; x < grid.columns; x++) {
                             const bool right = reference_dual_grid_node(&grid, 0, (int32_t)x, (int32_t)y)->folds;
                             cells++;
                             folds += right;

@@ -12,6 +12,7 @@
 #include "fixture.h"
 #include "readback.h"
 #include "reference_outline.h"
+#include "reference_separate.h"
 #include "reference_visibility.h"
 #include "scenes.h"
 
@@ -134,6 +135,11 @@ static void reference_image(const stage *s, const softsh_settings *settings, boo
     for (uint32_t i = 0; i < MAX_PIXELS; i++) {
         const reference_receiver *const r = &s->receivers[normals][i];
         reference_occlusion o;
+        if (contours && settings->reconstruction > SOFTSH_RECONSTRUCTION_JOINED) {
+            visibility[i] =
+                reference_separate_visibility(grids, layer_count, &s->map, &wanted, r, settings->reconstruction);
+            continue;
+        }
         if (contours) {
             assert_true(reference_contour_visibility(grids, layer_count, &s->map, &wanted, r, &visibility[i]));
             continue;
@@ -275,6 +281,31 @@ static void contours_are_the_references(void **state)
     assert_true(within_limits("contour", "", "", &d));
 }
 
+/* Cut apart by folds and by second differences. */
+static void separate_contours_are_the_references(void **state)
+{
+    bool failed = false;
+    uint32_t next = 0;
+    (void)state;
+    print_heading();
+    for (uint32_t folds = 0; folds < 2; folds++) {
+        differences d = {0};
+        for (uint32_t view = 0; view < 2; view++) {
+            const softsh_settings settings = {
+                .technique = SOFTSH_TECHNIQUE_CONTOUR,
+                .pattern = SOFTSH_PATTERN_8X8,
+                .aggregation = SOFTSH_AGGREGATION_SAMPLED,
+                .merge = view ? SOFTSH_MERGE_MAXIMUM : SOFTSH_MERGE_UNION,
+                .reconstruction = folds ? SOFTSH_RECONSTRUCTION_FOLDS : SOFTSH_RECONSTRUCTION_SECOND_DIFFERENCES,
+                .no_hierarchy = 1,
+            };
+            check_view(settings, view == 1, 0, SCENES, &next, &d);
+        }
+        failed |= !within_limits("contour", folds ? "folds" : "second differences", "", &d);
+    }
+    assert_false(failed);
+}
+
 /* Outlines are what all microquads together are, in bits; areas are those of the outline. */
 static void outlines_are_the_references(void **state)
 {
@@ -347,9 +378,9 @@ static int teardown(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bitmasks_are_the_references),     cmocka_unit_test(areas_are_the_references),
-        cmocka_unit_test(contours_are_the_references),     cmocka_unit_test(outlines_are_the_references),
-        cmocka_unit_test(hard_shadows_are_the_references),
+        cmocka_unit_test(bitmasks_are_the_references),          cmocka_unit_test(areas_are_the_references),
+        cmocka_unit_test(contours_are_the_references),          cmocka_unit_test(outlines_are_the_references),
+        cmocka_unit_test(separate_contours_are_the_references), cmocka_unit_test(hard_shadows_are_the_references),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

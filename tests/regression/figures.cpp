@@ -46,6 +46,7 @@ std::vector<Technique> technique_list()
         parse_technique("bitmask", {"primitive=microquad", "pattern=16x16j"}),
         parse_technique("bitmask", {"primitive=micropatch", "budget=16"}),
         parse_technique("bitmask", {"outline=on", "budget=32"}),
+        parse_technique("contour", {"reconstruction=folds", "budget=32"}),
         parse_technique("area", {"primitive=micropatch", "budget=32"}),
         parse_technique("contour", {"budget=16"}),
         parse_technique("contour", {"budget=16", "layers=1"}),
