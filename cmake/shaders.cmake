@@ -7,6 +7,7 @@ set(SOFTSHADOW_SHADERS
     hierarchy/hierarchy_plan
     hierarchy/hierarchy_widen
     hierarchy/hierarchy_fold
+    hierarchy/hierarchy_dual
     classify/classify_columns
     classify/classify_tiles
     classify/classify_pixels

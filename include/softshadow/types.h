@@ -166,6 +166,8 @@ typedef struct softsh_occluders_info {
     softsh_accel accel;
     uint32_t ysm_join;       /* the YSM's full-resolution part has at most this many texels a side; 0 means 256 */
     uint32_t outlines;       /* nonzero: views with softsh_settings::outline may use this light; a bit a texel */
+    uint32_t dual_grids;     /* nonzero: views with SOFTSH_SEARCH_WALK may use this light; 14 bytes a texel and layer
+                                with an HSM, some more with a YSM, 11 bytes a texel, layer and level with an MSSM */
     uint32_t max_recordings; /* the last so many builds may be pending or submitted again; 0 means 4, at most 1024 */
     softsh_memory_mode memory_mode;
     const char *name; /* debug name; copied; may be NULL */

@@ -37,7 +37,7 @@ typedef struct ss_ivec4 {
 #define SS_BIND_PLAN 1       /* ss_plan, where it is written */
 #define SS_BIND_MADE_DEPTH 2  /* storage texels, where they are written: fan depths, four of a row to a texel */
 #define SS_BIND_MADE_RANGES 3 /* vec2 (farthest, nearest): HSM levels 1 to top of each layer, and with several of all together;
-                                 MSSM levels 1 to n of all together */
+                                 MSSM levels 1 to n of all together; dual grids of each layer */
 #define SS_BIND_DEPTHS 4      /* uniform texels, where they are read: single fan depths */
 #define SS_BIND_DEPTH_QUADS 5 /* four of them */
 #define SS_BIND_RANGES 6
@@ -131,6 +131,9 @@ SS_STRUCT(ss_occluders)
     /* Per level: first texel and width of its ranges, which level 0 has none of; first quad of its sampled fan depths, quads
      * in a row of them. */
     SS_UVEC4 pyramid[SS_MAX_LEVELS];
+    /* Dual grids, after the wide levels. By level of the nodes, then by level of the samples, four to a vector: first texel in a
+     * layer's; where there are none, that of the next ones, and at last what a layer takes. */
+    SS_UVEC4 duals[SS_MAX_LEVELS * SS_MAX_LEVELS / 4];
 }
 SS_STRUCT_END(ss_occluders);
 
