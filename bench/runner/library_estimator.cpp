@@ -37,6 +37,7 @@ class LibraryEstimator final : public Estimator
             occluders.max_recordings = static_cast<uint32_t>(maps_.size());
             occluders.accel = technique.accel;
             occluders.outlines = technique.library.outline;
+            occluders.dual_grids = technique.library.search == SOFTSH_SEARCH_WALK;
             occluders_.resize(reuse_ ? 1 : maps_.size());
             for (softsh_occluders *&o : occluders_)
                 library_.check(softsh_occluders_create(library_.context, &occluders, &o));

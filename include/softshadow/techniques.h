@@ -75,6 +75,14 @@ typedef struct softsh_packet_cost {
     float divergence;
 } softsh_packet_cost;
 
+/* How contours are searched for; contour only. No result depends on it but for the order of sums. */
+typedef enum softsh_search {
+    SOFTSH_SEARCH_DEFAULT = 0, /* strips */
+    SOFTSH_SEARCH_STRIPS = 1,  /* blocks of 4 x 4 samples, then samples, of all of the kernel */
+    SOFTSH_SEARCH_WALK = 2     /* down a hierarchy from the node that spans the kernel, Yang et al. 2009, section 4.2;
+                                  for sampled depth, on occluders with `dual_grids` */
+} softsh_search;
+
 typedef struct softsh_settings {
     uint32_t struct_size;
     softsh_technique technique;
@@ -92,6 +100,7 @@ typedef struct softsh_settings {
                                filter_passes */
     softsh_packet packet;   /* contour only */
     softsh_packet_cost packet_cost; /* contour only; `softshadow-bench tune` measures it */
+    softsh_search search;           /* contour only */
     uint32_t outline;      /* nonzero: of microquads that cannot fold, only the outline of all of them is projected; the
                               result is the same. For area and bitmask, microquads, sampled depth and patterns up to
                               16 x 16, without filter_passes, on occluders with `outlines`; contour ignores it */

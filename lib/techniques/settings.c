@@ -42,6 +42,8 @@ softsh_settings softshi_settings_resolve(const softsh_settings *settings, bool s
         s.filter_passes = 0;
     if (s.technique == SOFTSH_TECHNIQUE_CONTOUR)
         s.outline = 0;
+    if (s.technique != SOFTSH_TECHNIQUE_CONTOUR || s.search == SOFTSH_SEARCH_DEFAULT)
+        s.search = SOFTSH_SEARCH_STRIPS;
     if (s.filter_passes > 0)
         s.sparse = 0;
     return s;
@@ -101,6 +103,7 @@ softshi_specialization softshi_settings_specialize(const softsh_settings *s, boo
     c.values[SS_SPEC_NORMALS] = normals;
     c.values[SS_SPEC_LAYERED] = 1;
     c.values[SS_SPEC_SPARSE] = s->sparse != 0;
+    c.values[SS_SPEC_WALK] = s->search == SOFTSH_SEARCH_WALK;
     const softshi_packets packets = softshi_settings_packets(s);
     c.values[SS_SPEC_PACKET] = packets.side[SS_LIST_LARGE]   ? packets.side[SS_LIST_LARGE]
                                : packets.side[SS_LIST_SMALL] ? packets.side[SS_LIST_SMALL]

@@ -72,7 +72,8 @@ typedef struct ss_ivec4 {
 #define SS_SPEC_BLOCK 13   /* pixels a side of the blocks that are classified: 3 or 4 */
 #define SS_SPEC_SPLIT 14   /* 1: 4 x 4 packets that are not of one contour go on as 2 x 2 ones, before single pixels */
 #define SS_SPEC_SUBLIGHTS 15 /* 1: visibility goes to a plane of its own, to be combined */
-#define SS_SPEC_COUNT 16
+#define SS_SPEC_WALK 16      /* 1: contours are searched by a walk down the dual grid, not in strips */
+#define SS_SPEC_COUNT 17
 
 #define SS_PRIMITIVE_PATCH 0
 #define SS_PRIMITIVE_PATCH_EXTENDED 1
