@@ -21,11 +21,6 @@ layout(push_constant) uniform ss_push
     ss_level_push push;
 };
 
-uint first_node(uint node_level, uint level)
-{
-    return occ.duals[(SS_MAX_LEVELS * node_level + level) / 4u][level % 4u];
-}
-
 // Of a level's samples those around a cell; where there are none, their neighbours stand in for them.
 vec2 sample_range(uint layer, uint level, ivec2 cell)
 {
@@ -52,16 +47,16 @@ vec2 children_range(uint layer, uint level, ivec2 cell)
 
 void main()
 {
-    const uint index = first_node(push.level, 0u) + gl_LocalInvocationIndex +
+    const uint index = ss_first_node(0u, push.level) + gl_LocalInvocationIndex +
                        (gl_WorkGroupID.y * SS_DISPATCH_WIDTH + gl_WorkGroupID.x) * SS_SAMPLE_GROUP;
-    if (index >= first_node(push.level + 1u, 0u))
+    if (index >= ss_first_node(0u, push.level + 1u))
         return;
     uint level = 0u;
-    while (level < occ.levels.x && index >= first_node(push.level, level + 1u))
+    while (level < occ.levels.x && index >= ss_first_node(level + 1u, push.level))
         level++;
     const uint layer = gl_GlobalInvocationID.z;
     const ss_nodes nodes = ss_load_nodes(layer, level, push.level);
-    const int i = int(index - first_node(push.level, level));
+    const int i = int(index - ss_first_node(level, push.level));
     const ivec2 at = ivec2(i % nodes.size.x, i / nodes.size.x), cell = at << nodes.shift;
     // What is left of the room for a smaller join.
     if (at.y >= nodes.size.y)

@@ -11,6 +11,13 @@ uint ss_dual_shift(uint level, uint node_level)
     return min(node_level, max(occ.levels.y, level) - level);
 }
 
+// The first of them, among a layer's texels; of node levels that are not there, that of the next one.
+uint ss_first_node(uint level, uint node_level)
+{
+    const uint entry = SS_MAX_LEVELS * node_level + level;
+    return occ.duals[entry / 4u][entry % 4u];
+}
+
 // A level's nodes of one layer.
 struct ss_nodes
 {
@@ -20,10 +27,10 @@ struct ss_nodes
 
 ss_nodes ss_load_nodes(uint layer, uint level, uint node_level)
 {
-    const uint entry = SS_MAX_LEVELS * node_level + level, last = SS_MAX_LEVELS * SS_MAX_LEVELS / 4 - 1;
+    const uint per_layer = occ.duals[SS_MAX_LEVELS * SS_MAX_LEVELS / 4 - 1].w;
     const ivec2 cells = (ivec2(occ.size.xy) + (1 << level) - 1 >> level) + 1;
     ss_nodes n;
-    n.base = occ.strides.z + occ.levels.z * occ.strides.w + layer * occ.duals[last].w + occ.duals[entry / 4u][entry % 4u];
+    n.base = occ.strides.z + occ.levels.z * occ.strides.w + layer * per_layer + ss_first_node(level, node_level);
     n.shift = ss_dual_shift(level, node_level);
     n.size = cells + (1 << n.shift) - 1 >> n.shift;
     return n;

@@ -1,14 +1,15 @@
-// The walk down a dual grid (Yang et al. 2009, section 4.2): from the node that spans the kernel to the cells that no node rules out,
-// and which of the samples around them occlude. docs/numerics.md, section 10. Departures: a round of the loop asks four children at
-// once, so that the node it starts with is not asked; and the stack is four bits a level, those of a node's children that wait.
+// The walk down a dual grid (Yang et al. 2009, section 4.2): from the node that spans the kernel to the cells that no node rules
+// out, and which of the samples around them occlude. docs/numerics.md, section 10. Departures: a round of the loop asks four
+// children at once, so that the node it starts with is not asked; and the stack is four bits a level, those of a node's children
+// that wait.
 // Needs the packet, the contour and the dual grid.
 #ifndef SS_WALK_GLSL
 #define SS_WALK_GLSL
 
 const uint SS_PATCHES = 32u; // looked for in one go: bits of a word
 
-// Nodes of level 1 with cells that are left: the first cell, x and y in 16 bits each; and bits of the nine samples around its four
-// cells, 3 y + x, of those that occlude all receivers, and from bit 16 on of those that may occlude some and not others.
+// Nodes of level 1 with cells that are left: the first cell, x and y in 16 bits each; and bits of the nine samples around its
+// four cells, 3 y + x, of those that occlude all receivers, and from bit 16 on of those that may occlude some and not others.
 uint ss_patch[SS_PATCHES], ss_patch_samples[SS_PATCHES];
 
 struct ss_walk
@@ -17,8 +18,8 @@ struct ss_walk
     uvec2 waiting;   // four bits a level
 };
 
-// Cells lo to hi + 1 are those around samples lo to hi. The node begins with the first one, as far as nodes do: it is aligned up to
-// the join, and to that above.
+// Cells lo to hi + 1 are those around samples lo to hi. The node begins with the first one, as far as nodes do: it is aligned up
+// to the join, and to that above.
 ss_walk ss_begin_walk(uint level, ivec2 lo, ivec2 hi)
 {
     const ivec2 differ = lo ^ (hi + 1);
@@ -34,7 +35,8 @@ ss_walk ss_begin_walk(uint level, ivec2 lo, ivec2 hi)
 
 // Bits of the nodes at `cell` and `side` cells farther on each axis that hold cells around samples lo to hi, and of those of them
 // whose cells contours may run through.
-void ss_ask_nodes(ss_packet p, ss_nodes nodes, uint level, ivec2 cell, int side, ivec2 lo, ivec2 hi, out uint held, out uint mixed)
+void ss_ask_nodes(ss_packet p, ss_nodes nodes, uint level, ivec2 cell, int side, ivec2 lo, ivec2 hi, out uint held,
+                  out uint mixed)
 {
     const float half_side = 0.5 * float(side << level);
     held = mixed = 0u;
@@ -43,7 +45,8 @@ void ss_ask_nodes(ss_packet p, ss_nodes nodes, uint level, ivec2 cell, int side,
         const bool holds = all(lessThanEqual(at, hi + 1)) && all(greaterThan(at + side, lo));
         const bool inside = all(greaterThan(at, lo)) && all(lessThanEqual(at + side, hi + 1)); // all of its samples
         bool every, none;
-        ss_block_status(p, ss_range_at(ss_node_at(nodes, at)), ss_sample_place(at - 1, level) + half_side, half_side, every, none);
+        const vec2 range = ss_range_at(ss_node_at(nodes, at));
+        ss_block_status(p, range, ss_sample_place(at - 1, level) + half_side, half_side, every, none);
         const bool pruned = SS_HIERARCHY && (none || (every && inside));
         held |= uint(holds) << i;
         mixed |= uint(holds && !pruned) << i;
@@ -91,7 +94,8 @@ uint ss_fill_patches(ss_packet p, bool one, ss_grid grid, ivec2 lo, ivec2 hi, ui
         // Three of a row, the last one twice.
         const ivec4 x = first.x + ivec4(0, 1, 2, 2), from = clamp(x, ivec4(0), ivec4(grid.last.x));
         const float after = ss_sample_axis(x.z, grid.level, last_texel.x);
-        const vec4 u = vec4(ss_sample_axis(x.x, grid.level, last_texel.x), ss_sample_axis(x.y, grid.level, last_texel.x), after, after);
+        const vec4 u = vec4(ss_sample_axis(x.x, grid.level, last_texel.x), ss_sample_axis(x.y, grid.level, last_texel.x), after,
+                            after);
         const uint columns = ss_bits(greaterThanEqual(x, ivec4(lo.x))) & ss_bits(lessThanEqual(x, ivec4(hi.x))) & 7u;
         uint bits = 0u;
         [[unroll]] for (int j = 0; j < 3; j++) {
