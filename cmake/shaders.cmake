@@ -8,6 +8,7 @@ set(SOFTSHADOW_SHADERS
     hierarchy/hierarchy_thin
     hierarchy/hierarchy_widen
     hierarchy/hierarchy_fold
+    hierarchy/hierarchy_dual
     classify/classify_columns
     classify/classify_tiles
     classify/classify_pixels

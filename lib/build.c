@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "occluders.h"
+#include "techniques/dual_grid.h"
 #include "techniques/hierarchy.h"
 #include "validate.h"
 
@@ -74,7 +75,8 @@ static softsh_result plan_build(const softsh_occluders *o, const softsh_build_in
     if (result == SOFTSH_SUCCESS)
         result = softshi_light_space_create(context, &light, &plan->maps[0], &plan->light);
     if (result == SOFTSH_SUCCESS)
-        softshi_layout_occluders(plan->extent, info->map_count, o->join_texels, o->outlines, &plan->layout);
+        softshi_layout_occluders(plan->extent, info->map_count, o->join_texels, o->outlines, o->dual_grids,
+                                 &plan->layout);
     return result;
 }
 
@@ -114,6 +116,7 @@ static void fill_header(const softsh_build_info *info, const build_plan *plan, s
     for (uint32_t i = 0; i <= layout->top; i++)
         out->pyramid[i] = (ss_uvec4){layout->offsets[i], softshi_level_size(plan->extent.width, i), layout->quads[i],
                                      softshi_level_quads(plan->extent.width, i)};
+    memcpy(out->duals, layout->duals, sizeof out->duals);
 }
 
 static void write_map_descriptor(const softsh_context *context, VkDescriptorSet set, const softsh_map *map)
@@ -163,6 +166,8 @@ softsh_result softsh_cmd_build_occluders(VkCommandBuffer cmd, softsh_occluders *
         softshi_hierarchy_record_convert(&recorder, o, plan.extent, &push);
     }
     softshi_hierarchy_record_levels(&recorder, o, plan.extent, &plan.layout, info->map_count);
+    if (o->dual_grids)
+        softshi_dual_grid_record(&recorder, o, plan.extent, &plan.layout, info->map_count);
     softshi_record_release(&recorder);
     softshi_record_end(&recorder);
 

@@ -30,6 +30,16 @@ uint32_t softshi_level_size(uint32_t texels, uint32_t level)
     return (uint32_t)(((uint64_t)texels + (UINT64_C(1) << level) - 1) >> level);
 }
 
+uint32_t softshi_dual_levels(VkExtent2D extent, uint32_t level)
+{
+    const uint32_t side = extent.width > extent.height ? extent.width : extent.height;
+    const uint32_t cells = softshi_level_size(side, level) + 1;
+    uint32_t levels = 0;
+    while (cells > UINT32_C(1) << levels)
+        levels++;
+    return levels;
+}
+
 static uint32_t maximum(uint32_t a, uint32_t b)
 {
     return a > b ? a : b;
@@ -40,7 +50,25 @@ static uint32_t minimum(uint32_t a, uint32_t b)
     return a < b ? a : b;
 }
 
-void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_texels, bool outlines,
+/* Nodes of a side, at most, also of a smaller map built into the same memory, which may join at a finer level. */
+static uint32_t dual_room(uint32_t texels, uint32_t level, uint32_t node_level, uint32_t join_texels)
+{
+    const uint32_t samples = softshi_level_size(texels, level), aligned = softshi_level_size(samples + 1, node_level);
+    return join_texels > 0 ? maximum(aligned, minimum(samples, join_texels) + 1) : aligned;
+}
+
+static void layout_dual_grids(VkExtent2D extent, uint32_t join_texels, softshi_occluder_layout *out)
+{
+    for (uint32_t k = 0; k < SS_MAX_LEVELS; k++)
+        for (uint32_t level = 0; level < SS_MAX_LEVELS; level++) {
+            out->duals[k][level] = (uint32_t)out->dual_texels;
+            if (level <= out->top && k < softshi_dual_levels(extent, level))
+                out->dual_texels += (VkDeviceSize)dual_room(extent.width, level, k, join_texels) *
+                                    dual_room(extent.height, level, k, join_texels);
+        }
+}
+
+void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_texels, bool outlines, bool dual_grids,
                               softshi_occluder_layout *out)
 {
     memset(out, 0, sizeof *out);
@@ -76,7 +104,10 @@ void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_
     }
     out->pyramids = layers > 1 ? layers + 1 : 1;
     out->wide_offset = out->pyramids * out->pyramid_texels;
-    const VkDeviceSize texels = out->wide_offset + (VkDeviceSize)out->wide_levels * out->wide_texels;
+    out->dual_offset = out->wide_offset + (VkDeviceSize)out->wide_levels * out->wide_texels;
+    if (dual_grids)
+        layout_dual_grids(extent, join_texels, out);
+    const VkDeviceSize texels = out->dual_offset + layers * out->dual_texels;
     VkDeviceSize end = 0;
     out->header = append(&end, sizeof(ss_occluders) + sizeof(ss_plan));
     out->fan_depth = append(&end, out->layer_quads * layers * 4 * sizeof(float));

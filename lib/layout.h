@@ -15,6 +15,8 @@ uint32_t softshi_level_size(uint32_t texels, uint32_t level);
 uint32_t softshi_level_words(uint32_t texels, uint32_t level);
 /* Quads of a row of fan depths there. */
 uint32_t softshi_level_quads(uint32_t texels, uint32_t level);
+/* Levels of the dual grid over that level's samples: one more, of a single node, would span all of its cells. */
+uint32_t softshi_dual_levels(VkExtent2D extent, uint32_t level);
 
 /* One light's structures for maps of `extent`. */
 typedef struct softshi_occluder_layout {
@@ -33,10 +35,14 @@ typedef struct softshi_occluder_layout {
     uint32_t wide_levels;            /* 0 without a wide part */
     VkDeviceSize wide_offset;        /* first texel of wide level 1 */
     uint32_t wide_texels;            /* room for a wide level */
+    VkDeviceSize dual_offset;        /* first texel of the first layer's dual grids */
+    VkDeviceSize dual_texels;        /* of `ranges`, of each layer; 0 without dual grids */
+    /* By level of the nodes, then by level of the samples: first texel in a layer's; where there are none, the next. */
+    uint32_t duals[SS_MAX_LEVELS][SS_MAX_LEVELS];
 } softshi_occluder_layout;
 
 /* `join_texels`: the most texels a side of the wide part; 0: no wide part (HSM), UINT32_MAX: an MSSM. */
-void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_texels, bool outlines,
+void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_texels, bool outlines, bool dual_grids,
                               softshi_occluder_layout *out);
 
 /* A view's scratch. */

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "techniques/dual_grid.h"
 #include "techniques/hierarchy.h"
 #include "validate.h"
 
@@ -14,7 +15,10 @@ static softsh_result check_limits(const softsh_occluders *o)
         const char *what;
         VkDeviceSize size;
     } ranges[] = {{"fan depth", o->layout.fan_depth.size},
-                  {o->layout.wide_levels ? "pyramid and full-resolution levels" : "pyramid", o->layout.ranges.size}};
+                  {o->dual_grids           ? "levels and dual grids"
+                   : o->layout.wide_levels ? "pyramid and full-resolution levels"
+                                           : "pyramid",
+                   o->layout.ranges.size}};
     for (size_t i = 0; i < sizeof ranges / sizeof *ranges; i++)
         if (ranges[i].size > context->limits.maxStorageBufferRange)
             return softshi_fail(context, SOFTSH_ERROR_LIMIT,
@@ -168,7 +172,8 @@ softsh_result softsh_occluders_create(softsh_context *context, const softsh_occl
     else if (info->accel == SOFTSH_ACCEL_MSSM)
         o->join_texels = UINT32_MAX;
     o->outlines = info->outlines != 0;
-    softshi_layout_occluders(o->max_extent, o->max_layers, o->join_texels, o->outlines, &o->layout);
+    o->dual_grids = info->dual_grids != 0;
+    softshi_layout_occluders(o->max_extent, o->max_layers, o->join_texels, o->outlines, o->dual_grids, &o->layout);
     result = check_limits(o);
     if (result == SOFTSH_SUCCESS)
         result = softshi_block_create(context, &o->block, o->layout.buffer_size, o->name, "occluders");
@@ -176,6 +181,8 @@ softsh_result softsh_occluders_create(softsh_context *context, const softsh_occl
         result = create_sets(o, info->max_recordings ? info->max_recordings : 4);
     if (result == SOFTSH_SUCCESS)
         result = softshi_hierarchy_create(o);
+    if (result == SOFTSH_SUCCESS && o->dual_grids)
+        result = softshi_dual_grid_create(o);
     if (result == SOFTSH_SUCCESS && info->memory_mode == SOFTSH_MEMORY_LIBRARY) {
         result = softshi_block_allocate(context, &o->block);
         if (result == SOFTSH_SUCCESS)
@@ -195,6 +202,7 @@ void softsh_occluders_destroy(softsh_occluders *o)
         return;
     const softsh_context *context = o->context;
     softshi_hierarchy_destroy(o);
+    softshi_dual_grid_destroy(o);
     if (o->pool)
         context->vk.DestroyDescriptorPool(context->device, o->pool, context->allocator);
     const VkBufferView texels[] = {o->depths, o->depth_quads, o->ranges, o->bits};

@@ -12,7 +12,7 @@
 enum { SOFTSHI_NAME_SIZE = 64 };
 
 typedef struct softshi_hierarchy_pipelines {
-    softshi_pipeline convert, sample, reduce, merge, plan, widen_first, widen, thin, fold;
+    softshi_pipeline convert, sample, reduce, merge, plan, widen_first, widen, thin, fold, dual_first, dual;
 } softshi_hierarchy_pipelines;
 
 struct softsh_occluders {
@@ -23,7 +23,7 @@ struct softsh_occluders {
     uint32_t join_texels; /* as softshi_layout_occluders takes it */
     softshi_occluder_layout layout;
     softshi_block block;
-    bool outlines;
+    bool outlines, dual_grids;
     VkBufferView depths, depth_quads, ranges, bits; /* fan depths one by one and by four; ranges; bits */
     VkDescriptorPool pool;
     VkDescriptorSet set;

@@ -11,7 +11,8 @@
 static_assert(offsetof(ss_occluders, depths) == 48, "std430");
 static_assert(offsetof(ss_occluders, size) == 80, "std430");
 static_assert(offsetof(ss_occluders, pyramid) == 256, "std430");
-static_assert(sizeof(ss_occluders) == 512, "std430");
+static_assert(offsetof(ss_occluders, duals) == 512, "std430");
+static_assert(sizeof(ss_occluders) == 1536, "std430"); /* ss_plan begins here: a multiple of 256 */
 static_assert(sizeof(ss_plan) == 16 * SS_MAX_LEVELS + 16, "std430");
 static_assert(offsetof(ss_frame, camera) == 128, "std430");
 static_assert(offsetof(ss_frame, area) == 160, "std430");

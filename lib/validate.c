@@ -121,6 +121,12 @@ softsh_result softshi_check_settings(const softsh_context *context, const softsh
         return INVALID("softsh_settings::reconstruction is %d, but aggregation is SOFTSH_AGGREGATION_NEAREST, expected "
                        "SOFTSH_AGGREGATION_SAMPLED",
                        (int)s->reconstruction);
+    if ((unsigned)s->search > SOFTSH_SEARCH_WALK)
+        return INVALID("softsh_settings::search is %d, expected a softsh_search", (int)s->search);
+    if (s->search == SOFTSH_SEARCH_WALK && s->technique == SOFTSH_TECHNIQUE_CONTOUR &&
+        s->aggregation == SOFTSH_AGGREGATION_NEAREST)
+        return UNSUPPORTED("softsh_settings::search is SOFTSH_SEARCH_WALK, but aggregation is "
+                           "SOFTSH_AGGREGATION_NEAREST, expected SOFTSH_AGGREGATION_SAMPLED");
     if (s->outline && (s->technique == SOFTSH_TECHNIQUE_AREA || s->technique == SOFTSH_TECHNIQUE_BITMASK)) {
         if (s->primitive != SOFTSH_PRIMITIVE_DEFAULT && s->primitive != SOFTSH_PRIMITIVE_MICROQUAD)
             return INVALID("softsh_settings::outline is set, but primitive is %d, expected SOFTSH_PRIMITIVE_MICROQUAD",

@@ -59,6 +59,10 @@ static softsh_result check(const softsh_view *v, const softsh_visibility_info *i
         return softshi_fail(
             context, SOFTSH_ERROR_INVALID_ARGUMENT,
             "softsh_visibility_info::occluders was created without outlines, which the view's settings need");
+    if (v->settings.search == SOFTSH_SEARCH_WALK && !info->occluders->light.point && !info->occluders->dual_grids)
+        return softshi_fail(
+            context, SOFTSH_ERROR_INVALID_ARGUMENT,
+            "softsh_visibility_info::occluders was created without dual_grids, which the view's settings need");
     if (softshi_settings_need_alignment(&v->settings) && !info->occluders->light.point &&
         !info->occluders->light.axis_aligned)
         return softshi_fail(

@@ -38,6 +38,7 @@ class LibraryEstimator final : public Estimator
             occluders.accel = technique.accel;
             occluders.outlines =
                 technique.library.outline || technique.library.reconstruction > SOFTSH_RECONSTRUCTION_JOINED;
+            occluders.dual_grids = technique.library.search == SOFTSH_SEARCH_WALK;
             occluders_.resize(reuse_ ? 1 : maps_.size());
             for (softsh_occluders *&o : occluders_)
                 library_.check(softsh_occluders_create(library_.context, &occluders, &o));

@@ -178,6 +178,11 @@ const std::vector<Setting> &setting_list()
              if (std::sscanf(v.c_str(), "%f%c", &t.library.packet_cost.divergence, &rest) != 1)
                  fail("setting divergence is \"%s\", expected a number", v.c_str());
          }},
+        {"search", "strips | walk: for contours", ON_CONTOUR,
+         [](Technique &t, const std::string &v) {
+             t.library.search = static_cast<softsh_search>(
+                 choose("search", v, {{"strips", SOFTSH_SEARCH_STRIPS}, {"walk", SOFTSH_SEARCH_WALK}}));
+         }},
         {"sparse", "on | off: interpolate pixels between others", ON_LIBRARY,
          [](Technique &t, const std::string &v) { t.library.sparse = choose("sparse", v, on_off); }},
         {"filter", "N: passes of the post filter", ON_AREA | ON_BITMASK,

@@ -52,13 +52,13 @@ typedef enum softsh_merge {
     SOFTSH_MERGE_MAXIMUM = 2  /* the darkest single layer, as Atty et al. 2006 do for front and back faces */
 } softsh_merge;
 
-/* Where neighbouring samples that both occlude are taken for one surface; contour only. What is cut apart ends half a step
- * beyond its last sample, at its own depth, as all contours do. */
+/* Where neighbouring samples that both occlude are taken for one surface; contour only. What is cut apart ends half a
+ * step beyond its last sample, at its own depth, as all contours do. */
 typedef enum softsh_reconstruction {
     SOFTSH_RECONSTRUCTION_DEFAULT = 0, /* joined */
     SOFTSH_RECONSTRUCTION_JOINED = 1,  /* everywhere: one layer of a map casts a shadow without gaps */
-    SOFTSH_RECONSTRUCTION_FOLDS = 2,   /* unless the receiver sees them the other way round: what is near lies in front of what
-                                          is far, as seen from the light's centre. Slower, the least error */
+    SOFTSH_RECONSTRUCTION_FOLDS = 2, /* unless the receiver sees them the other way round: what is near lies in front of
+                                        what is far, as seen from the light's centre. Slower, the least error */
     SOFTSH_RECONSTRUCTION_SECOND_DIFFERENCES = 3 /* unless fan depth jumps: leaks light where solid things overlap */
 } softsh_reconstruction;
 
@@ -85,6 +85,14 @@ typedef struct softsh_packet_cost {
     float divergence;
 } softsh_packet_cost;
 
+/* How contours are searched for; contour only. No result depends on it but for the order of sums. */
+typedef enum softsh_search {
+    SOFTSH_SEARCH_DEFAULT = 0, /* strips */
+    SOFTSH_SEARCH_STRIPS = 1,  /* blocks of 4 x 4 samples, then samples, of all of the kernel */
+    SOFTSH_SEARCH_WALK = 2     /* down a hierarchy from the node that spans the kernel, Yang et al. 2009, section 4.2;
+                                  for sampled depth, on occluders with `dual_grids` */
+} softsh_search;
+
 typedef struct softsh_settings {
     uint32_t struct_size;
     softsh_technique technique;
@@ -100,14 +108,15 @@ typedef struct softsh_settings {
     uint32_t sparse;        /* nonzero: evaluate every second pixel of every second row, and of the rest those whose
                                neighbours differ or lie on other surfaces; interpolate the others. Ignored with
                                filter_passes */
-    softsh_packet packet;   /* contour only */
-    softsh_packet_cost packet_cost; /* contour only; `softshadow-bench tune` measures it */
-    softsh_reconstruction reconstruction; /* contour only; other than joined: without packets, for sampled depth and on occluders
-                                             with `outlines` */
-    uint32_t outline;      /* nonzero: of microquads that cannot fold, only the outline of all of them is projected; the
-                              result is the same. For area and bitmask, microquads, sampled depth and patterns up to
-                              16 x 16, without filter_passes, on occluders with `outlines`; contour ignores it */
-    uint32_t no_refinement; /* nonzero: keep to the budget's level also where something in the kernel is thinner than half
+    softsh_packet packet;                 /* contour only */
+    softsh_packet_cost packet_cost;       /* contour only; `softshadow-bench tune` measures it */
+    softsh_reconstruction reconstruction; /* contour only; other than joined: without packets, for sampled depth and on
+                                             occluders with `outlines` */
+    softsh_search search;                 /* contour only, and joined */
+    uint32_t outline; /* nonzero: of microquads that cannot fold, only the outline of all of them is projected; the
+                         result is the same. For area and bitmask, microquads, sampled depth and patterns up to
+                         16 x 16, without filter_passes, on occluders with `outlines`; contour ignores it */
+    uint32_t no_refinement; /* nonzero: keep to the budget's level also where something in the kernel is thinner than
                                the distance of its samples, and perhaps lose its shadow. By default such pixels are
                                evaluated one or two levels finer, at four times the work each. Sampled depth only */
     uint32_t no_hierarchy;  /* nonzero: neither prune kernels nor classify; for comparisons */

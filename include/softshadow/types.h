@@ -167,6 +167,8 @@ typedef struct softsh_occluders_info {
     uint32_t ysm_join;       /* the YSM's full-resolution part has at most this many texels a side; 0 means 256 */
     uint32_t outlines;       /* nonzero: views with softsh_settings::outline or reconstruction may use this light; a
                                 bit a texel */
+    uint32_t dual_grids;     /* nonzero: views with SOFTSH_SEARCH_WALK may use this light; 14 bytes a texel and layer
+                                with an HSM, some more with a YSM, 10 bytes a texel, layer and level with an MSSM */
     uint32_t max_recordings; /* the last so many builds may be pending or submitted again; 0 means 4, at most 1024 */
     softsh_memory_mode memory_mode;
     const char *name; /* debug name; copied; may be NULL */
@@ -214,21 +216,22 @@ typedef struct softsh_stats {
     uint64_t pixels; /* in the render area */
     uint64_t
         lit; /* found lit by classification (or by the one comparison of a light without size); background included */
-    uint64_t umbra;             /* found dark likewise */
-    uint64_t active;            /* neither: evaluated one by one, or interpolated */
-    uint64_t nodes;             /* four per query of the hierarchy */
-    uint64_t primitives;        /* micro-occluders, or edges of contours, projected */
-    uint64_t tiles;             /* 8 x 8 pixel tiles in the render area */
-    uint64_t undecided_tiles;   /* needed a look at their pixels */
-    uint64_t clamped;           /* active pixels whose level the budget, or the bound on one pixel's work, coarsened */
-    uint64_t interpolated;      /* active pixels that took their neighbours' mean instead */
-    uint64_t packets;           /* packets of pixels that evaluation began with; of contours */
-    uint64_t incoherent;        /* of these, with pixels that did not belong together and were evaluated apart */
-    uint64_t diverged;          /* of these, not of one contour: all pixels were evaluated apart */
-    uint64_t edges;             /* edges of contours or outlines found, by packets and pixels */
-    uint64_t visited;           /* samples and blocks of samples looked at for these, likewise */
-    uint64_t refined;           /* active pixels evaluated finer than the budget, for something thin in their kernels */
-    uint32_t wide_levels_built; /* MSSM levels of the occluders' last build */
+    uint64_t umbra;           /* found dark likewise */
+    uint64_t active;          /* neither: evaluated one by one, or interpolated */
+    uint64_t nodes;           /* four per query of the hierarchy */
+    uint64_t primitives;      /* micro-occluders, or edges of contours, projected */
+    uint64_t tiles;           /* 8 x 8 pixel tiles in the render area */
+    uint64_t undecided_tiles; /* needed a look at their pixels */
+    uint64_t clamped;         /* active pixels whose level the budget, or the bound on one pixel's work, coarsened */
+    uint64_t interpolated;    /* active pixels that took their neighbours' mean instead */
+    uint64_t packets;         /* packets of pixels that evaluation began with; of contours */
+    uint64_t incoherent;      /* of these, with pixels that did not belong together and were evaluated apart */
+    uint64_t diverged;        /* of these, not of one contour: all pixels were evaluated apart */
+    uint64_t edges;           /* edges of contours or outlines found, by packets and pixels */
+    uint64_t visited;         /* looked at for these, likewise: samples and blocks of them; by SOFTSH_SEARCH_WALK, nodes
+                                 of levels above 0, and cells between four samples */
+    uint64_t refined;         /* active pixels evaluated finer than the budget, for something thin in their kernels */
+    uint32_t wide_levels_built;   /* MSSM levels of the occluders' last build */
     uint32_t wide_levels_skipped; /* MSSM levels that no kernel of this light and map can ask for */
 } softsh_stats;
 

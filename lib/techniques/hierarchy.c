@@ -127,7 +127,7 @@ void softshi_hierarchy_record_levels(softshi_recorder *recorder, const softsh_oc
         const softshi_pass thin = {
             .pipeline = &o->pipelines.thin,
             /* Of the ranges only the pyramid, but both are one view. */
-            .reads = SOFTSHI_HEADER | SOFTSHI_FAN_DEPTH | SOFTSHI_PYRAMID | SOFTSHI_WIDE,
+            .reads = SOFTSHI_HEADER | SOFTSHI_FAN_DEPTH | SOFTSHI_PYRAMID | SOFTSHI_WIDE | SOFTSHI_DUAL,
             .writes = SOFTSHI_BITS,
             .groups = {groups < SS_DISPATCH_WIDTH ? groups : SS_DISPATCH_WIDTH, divide_up(groups, SS_DISPATCH_WIDTH),
                        1},

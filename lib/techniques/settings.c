@@ -44,6 +44,8 @@ softsh_settings softshi_settings_resolve(const softsh_settings *settings, bool s
         s.filter_passes = 0;
     if (s.technique == SOFTSH_TECHNIQUE_CONTOUR)
         s.outline = 0;
+    if (!softshi_settings_in_packets(&s) || s.search == SOFTSH_SEARCH_DEFAULT)
+        s.search = SOFTSH_SEARCH_STRIPS;
     if (s.filter_passes > 0)
         s.sparse = 0;
     return s;
@@ -115,6 +117,7 @@ softshi_specialization softshi_settings_specialize(const softsh_settings *s, boo
     c.values[SS_SPEC_SPARSE] = s->sparse != 0;
     /* The nearest depth of a block misses nothing. */
     c.values[SS_SPEC_REFINE] = s->aggregation == SOFTSH_AGGREGATION_SAMPLED && !s->no_refinement;
+    c.values[SS_SPEC_WALK] = s->search == SOFTSH_SEARCH_WALK;
     const softshi_packets packets = softshi_settings_packets(s);
     c.values[SS_SPEC_PACKET] = packets.side[SS_LIST_LARGE]   ? packets.side[SS_LIST_LARGE]
                                : packets.side[SS_LIST_SMALL] ? packets.side[SS_LIST_SMALL]

@@ -35,7 +35,7 @@ void softshi_hard_record(const softshi_visibility *visibility);
 /* What every pass that queries the hierarchy reads. */
 enum {
     SOFTSHI_HIERARCHY =
-        SOFTSHI_HEADER | SOFTSHI_PLAN | SOFTSHI_FAN_DEPTH | SOFTSHI_PYRAMID | SOFTSHI_WIDE | SOFTSHI_BITS
+        SOFTSHI_HEADER | SOFTSHI_PLAN | SOFTSHI_FAN_DEPTH | SOFTSHI_PYRAMID | SOFTSHI_WIDE | SOFTSHI_BITS | SOFTSHI_DUAL
 };
 
 #endif

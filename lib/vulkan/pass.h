@@ -16,7 +16,8 @@ typedef enum softshi_resource {
     SOFTSHI_TILES = 1 << 7,
     SOFTSHI_FILTER = 1 << 8,
     SOFTSHI_VISIBILITY = 1 << 9,
-    SOFTSHI_BITS = 1 << 10 /* of what is thin, and folds */
+    SOFTSHI_BITS = 1 << 10, /* of what is thin, and folds */
+    SOFTSHI_DUAL = 1 << 11  /* of the ranges */
 } softshi_resource;
 
 typedef struct softshi_recorder {

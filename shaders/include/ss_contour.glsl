@@ -1,5 +1,5 @@
-// Marching squares over a strip of samples: docs/numerics.md, section 10.
-// Needs the strip.
+// Marching squares over samples as bits: docs/numerics.md, section 10.
+// Needs the sample.
 #ifndef SS_CONTOUR_GLSL
 #define SS_CONTOUR_GLSL
 
@@ -7,36 +7,22 @@
 // of the run that occludes.
 const uint SS_LAST_CORNER = 0x3343a250u, SS_FIRST_CORNER = 0x1acf1210u;
 
-// Rows of cells that the contour runs through, of `count` rows; of 31 columns.
-uint ss_contour_rows(int count)
-{
-    uint rows = 0u, below = ss_strip[0];
-    for (int j = 1; j <= count; j++) {
-        const uint above = ss_strip[j];
-        const uint any = below | below >> 1 | above | above >> 1, all = below & below >> 1 & above & above >> 1;
-        rows |= (any & ~all & 0x7fffffffu) != 0u ? 1u << (j - 1) : 0u;
-        below = above;
-    }
-    return rows;
-}
-
-// Which cells of a row of the strip, among `columns`, are left to be visited; some twice.
+// Which cells between samples are left to be visited; some twice.
 struct ss_contour_cells
 {
-    int row;
-    uint below, above; // samples
+    uint below, above; // samples: bits k and k + 1 of both are cell k's
     uint todo, twice;
 };
 
-ss_contour_cells ss_begin_cells(int row, uint columns)
+// Those of `cells` that the contour runs through.
+ss_contour_cells ss_begin_cells(uint below, uint above, uint cells)
 {
     ss_contour_cells c;
-    c.row = row;
-    c.below = ss_strip[row];
-    c.above = ss_strip[row + 1];
+    c.below = below;
+    c.above = above;
     const uint right = c.below >> 1, across = c.above >> 1;
-    c.todo = (c.below | right | across | c.above) & ~(c.below & right & across & c.above) & columns;
-    c.twice = ((c.below & across & ~(right | c.above)) | (right & c.above & ~(c.below | across))) & columns;
+    c.todo = (c.below | right | across | c.above) & ~(c.below & right & across & c.above) & cells;
+    c.twice = ((c.below & across & ~(right | c.above)) | (right & c.above & ~(c.below | across))) & cells;
     return c;
 }
 

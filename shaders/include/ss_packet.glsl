@@ -64,6 +64,9 @@ void ss_block_status(ss_packet p, vec2 range, vec2 middle, float half_side, out 
     none = !(range.x < p.g_limit) || !(range.y > p.g_lo) || max(height.x, height.y) <= least;
 }
 
+// Samples, blocks and nodes looked at, for statistics.
+uint ss_visited = 0u;
+
 // What the tests of a row of samples have in common.
 struct ss_row
 {

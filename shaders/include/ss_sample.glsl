@@ -65,6 +65,13 @@ vec2 ss_sample_place(ivec2 at, uint level)
     return (vec2(at) + 0.5) * float(1u << level);
 }
 
+// (u, v) of sample `at` along one axis; `last`: the map's last texel on it.
+float ss_sample_axis(int at, uint level, int last)
+{
+    const int spacing = 1 << int(level);
+    return SS_SAMPLED ? float(min((at << int(level)) + (spacing >> 1), last)) + 0.5 : (float(at) + 0.5) * float(spacing);
+}
+
 // Where a layer's samples of a level are. Looked up once, not for every sample: indexing a uniform costs as much as a fetch.
 struct ss_grid
 {

@@ -22,5 +22,6 @@ const uint SS_TILE_BLOCKS = SS_BLOCK_ROW * SS_BLOCK_ROW;
 layout(constant_id = SS_SPEC_REFINE) const bool SS_REFINE = false;
 layout(constant_id = SS_SPEC_RECONSTRUCTION) const int SS_RECONSTRUCTION = SS_RECONSTRUCTION_FOLDS;
 layout(constant_id = SS_SPEC_SPLIT) const bool SS_SPLIT = false;
+layout(constant_id = SS_SPEC_WALK) const bool SS_WALK = false;
 
 #endif

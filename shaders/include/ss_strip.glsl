@@ -20,13 +20,6 @@ uint ss_spread_bits(uint bits)
     return b * 15u;
 }
 
-// (u, v) of sample `at` along one axis; `last`: the map's last texel on it.
-float ss_sample_axis(int at, uint level, int last)
-{
-    const int spacing = 1 << int(level);
-    return SS_SAMPLED ? float(min((at << int(level)) + (spacing >> 1), last)) + 0.5 : (float(at) + 0.5) * float(spacing);
-}
-
 // The samples around x0 to x0 + 31 whose block is known to occlude all receivers, or is not known, a bit for each of 8 blocks.
 struct ss_strip_blocks
 {
@@ -49,9 +42,6 @@ ss_strip_blocks ss_test_blocks(ss_packet p, ss_grid blocks, ivec2 at, int first,
     }
     return b;
 }
-
-// Quads and blocks looked at, for statistics.
-uint ss_visited = 0u;
 
 // Fills the strips' rows 0 to `count` with samples (x0, y0) and on, of those from `lo` to `hi`. x0 is a multiple of four. Returns
 // which rows hold unknown ones.
@@ -105,6 +95,19 @@ uint ss_fill_strip(ss_packet p, bool one, ss_grid grid, ss_grid blocks, bool in_
         }
     }
     return unknown_rows;
+}
+
+// Rows of cells that the contour runs through, of `count` rows; of 31 columns.
+uint ss_contour_rows(int count)
+{
+    uint rows = 0u, below = ss_strip[0];
+    for (int j = 1; j <= count; j++) {
+        const uint above = ss_strip[j];
+        const uint any = below | below >> 1 | above | above >> 1, all = below & below >> 1 & above & above >> 1;
+        rows |= (any & ~all & 0x7fffffffu) != 0u ? 1u << (j - 1) : 0u;
+        below = above;
+    }
+    return rows;
 }
 
 #endif

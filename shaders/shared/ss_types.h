@@ -37,7 +37,7 @@ typedef struct ss_ivec4 {
 #define SS_BIND_PLAN 1       /* ss_plan, where it is written */
 #define SS_BIND_MADE_DEPTH 2  /* storage texels, where they are written: fan depths, four of a row to a texel */
 #define SS_BIND_MADE_RANGES 3 /* vec2 (farthest, nearest): HSM levels 1 to top of each layer, and with several of all together;
-                                 MSSM levels 1 to n of all together */
+                                 MSSM levels 1 to n of all together; dual grids of each layer */
 #define SS_BIND_DEPTHS 4      /* uniform texels, where they are read: single fan depths */
 #define SS_BIND_DEPTH_QUADS 5 /* four of them */
 #define SS_BIND_RANGES 6
@@ -76,7 +76,8 @@ typedef struct ss_ivec4 {
 #define SS_SPEC_SUBLIGHTS 15 /* 1: visibility goes to a plane of its own, to be combined */
 #define SS_SPEC_REFINE 16 /* 1: finer levels where a kernel's level is too coarse for what is thin */
 #define SS_SPEC_RECONSTRUCTION 17 /* SS_RECONSTRUCTION_* */
-#define SS_SPEC_COUNT 18
+#define SS_SPEC_WALK 18 /* 1: contours are searched by a walk down the dual grid, not in strips */
+#define SS_SPEC_COUNT 19
 
 #define SS_PRIMITIVE_PATCH 0
 #define SS_PRIMITIVE_PATCH_EXTENDED 1
@@ -139,6 +140,9 @@ SS_STRUCT(ss_occluders)
     /* Per level: first texel and width of its ranges, which level 0 has none of; first quad of its sampled fan depths, quads
      * in a row of them. */
     SS_UVEC4 pyramid[SS_MAX_LEVELS];
+    /* Dual grids, after the wide levels. By level of the nodes, then by level of the samples, four to a vector: first texel in a
+     * layer's; where there are none, that of the next ones, and at last what a layer takes. */
+    SS_UVEC4 duals[SS_MAX_LEVELS * SS_MAX_LEVELS / 4];
 }
 SS_STRUCT_END(ss_occluders);
 

@@ -539,6 +539,17 @@ static void large_multi_scale_maps(void **state)
         scene_expect_words("2048 x 2048 take 362 MiB");
         scene_expect_words(limit);
     }
+    in.occluders.max_extent = (VkExtent2D){1024, 1024};
+    in.occluders.dual_grids = 1;
+    scene_message_count = 0;
+    if (softsh_occluders_create(context, &in.occluders, &occluders) == SOFTSH_SUCCESS) {
+        assert_true(most >= 196);
+        softsh_occluders_destroy(occluders);
+    } else if (most < 196) {
+        assert_int_equal(scene_message_count, 1);
+        scene_expect_words("1024 x 1024 take 196 MiB of levels and dual grids");
+        scene_expect_words(limit);
+    }
     scene_message_count = 0;
     softsh_context_destroy(context);
     scene_expect_silence(s);

@@ -271,6 +271,10 @@ static void view_errors(void **state)
         in.settings.pattern = SOFTSH_PATTERN_32X32, UNSUPPORTED, "softsh_settings::outline");
     BAD(VIEW, in.settings.technique = SOFTSH_TECHNIQUE_BITMASK; in.settings.outline = 1;
         in.settings.filter_passes = 1, INVALID, "softsh_settings::outline");
+    BAD(VIEW, in.settings.search = (softsh_search)3, INVALID, "softsh_settings::search");
+    BAD(VIEW, in.settings.search = (softsh_search)-1, INVALID, "softsh_settings::search");
+    BAD(VIEW, in.settings.technique = SOFTSH_TECHNIQUE_CONTOUR; in.settings.search = SOFTSH_SEARCH_WALK;
+        in.settings.aggregation = SOFTSH_AGGREGATION_NEAREST, UNSUPPORTED, "softsh_settings::search");
     BAD(VIEW, in.settings.packet_cost.node = -1.0f, INVALID, "softsh_settings::packet_cost.node");
     BAD(VIEW, in.settings.packet_cost.edge = 2e6f, INVALID, "softsh_settings::packet_cost.edge");
     BAD(VIEW, in.settings.packet_cost.projection = NAN, INVALID, "softsh_settings::packet_cost.projection");
@@ -503,16 +507,21 @@ static void mismatches(void **state)
     with.view = scene_view(with.context, &valid);
     BAD(VISIBILITY, (void)in, INVALID, "outlines");
     softsh_view_destroy(with.view);
+    valid.settings.outline = 0;
     valid.settings.technique = SOFTSH_TECHNIQUE_CONTOUR;
     valid.settings.reconstruction = SOFTSH_RECONSTRUCTION_FOLDS;
     valid.settings.aggregation = SOFTSH_AGGREGATION_SAMPLED;
     with.view = scene_view(with.context, &valid);
     BAD(VISIBILITY, (void)in, INVALID, "outlines");
     softsh_view_destroy(with.view);
-    valid.settings.technique = SOFTSH_TECHNIQUE_BITMASK;
     valid.settings.reconstruction = SOFTSH_RECONSTRUCTION_DEFAULT;
+    valid.settings.search = SOFTSH_SEARCH_WALK;
+    with.view = scene_view(with.context, &valid);
+    BAD(VISIBILITY, (void)in, INVALID, "dual_grids");
+    softsh_view_destroy(with.view);
+    valid.settings.technique = SOFTSH_TECHNIQUE_BITMASK;
+    valid.settings.search = SOFTSH_SEARCH_DEFAULT;
     valid.view.normals = 1;
-    valid.settings.outline = 0;
 
     /* Micropatches cannot do a light whose axes are turned against the map's. */
     valid.settings.primitive = SOFTSH_PRIMITIVE_MICROPATCH;

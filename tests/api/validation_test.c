@@ -49,7 +49,7 @@ static void settings_are_silent(void **state)
             in.maps[0].rect = in.maps[1].rect = (VkRect2D){{3, 1}, {37, 29}};
         if (i == 9)
             in.view.settings = NULL;
-        /* Outlines, and views that combine sub-lights. */
+        /* Outlines, dual grids, and views that combine sub-lights. */
         in.occluders.outlines = i % 4 == 1;
         in.view.sublights = i % 3 == 2;
         if (in.occluders.outlines && in.settings.technique != SOFTSH_TECHNIQUE_CONTOUR) {
@@ -61,6 +61,11 @@ static void settings_are_silent(void **state)
         }
         if (in.occluders.outlines && in.settings.technique == SOFTSH_TECHNIQUE_CONTOUR) {
             in.settings.reconstruction = 2 + i / 4 % 2;
+            in.settings.aggregation = SOFTSH_AGGREGATION_SAMPLED;
+        }
+        in.occluders.dual_grids = i % 3 == 2;
+        if (in.occluders.dual_grids && in.settings.technique == SOFTSH_TECHNIQUE_CONTOUR) {
+            in.settings.search = SOFTSH_SEARCH_WALK;
             in.settings.aggregation = SOFTSH_AGGREGATION_SAMPLED;
         }
         if (in.view.sublights && lamp != LAMP_DIRECTIONAL) {

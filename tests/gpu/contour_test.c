@@ -1,6 +1,6 @@
 /* Contours where they are awkward: occluders that touch at a corner only, single texels, borders, kernels of several
  * words of samples, and as many edges as an invocation may have to visit. Against the double-precision reference, with
- * and without hierarchy. */
+ * and without hierarchy, in strips and by the walk. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -133,9 +133,12 @@ static void reference_image(const board *b, const scene *s, double *visibility)
     free(g);
 }
 
-/* `stats` are those with hierarchy. */
+/* `stats` are those with hierarchy, of either search. */
 static void check(const board *b, softsh_stats *stats)
 {
+    static const softsh_accel accels[] = {SOFTSH_ACCEL_YSM, SOFTSH_ACCEL_MSSM, SOFTSH_ACCEL_HSM};
+    static uint32_t next;
+    const uint32_t searches = b->settings.aggregation == SOFTSH_AGGREGATION_NEAREST ? 1 : 2;
     static float visibility[MAX_PIXELS];
     static double right[MAX_PIXELS];
     const uint32_t pixels = b->side * b->side;
@@ -145,14 +148,19 @@ static void check(const board *b, softsh_stats *stats)
     board_create(b, &s);
     s.eye.normals = NULL;
     reference_image(b, &s, right);
+    s.lamp.dual_grids = searches > 1;
+    s.lamp.accel = accels[next++ % 3];
+    s.lamp.ysm_join = 24;
     lamp_create(&s.lamp, &l);
     eye_create(&s.eye, &e);
-    for (uint32_t hierarchy = 0; hierarchy < 2; hierarchy++) {
+    for (uint32_t variant = 0; variant < 2 * searches; variant++) {
+        const bool hierarchy = variant % 2, walk = variant / 2;
         sight_info info = {.settings = b->settings, .width = b->side, .height = b->side};
         double sum = 0.0, most = 0.0, shadow = 0.0;
         sight view;
         info.settings.technique = SOFTSH_TECHNIQUE_CONTOUR;
         info.settings.no_hierarchy = !hierarchy;
+        info.settings.search = walk ? SOFTSH_SEARCH_WALK : SOFTSH_SEARCH_STRIPS;
         sight_create(&info, &view);
         sight_run(&view, &l, &e, NULL, visibility, stats);
         for (uint32_t i = 0; i < pixels; i++) {
@@ -161,8 +169,8 @@ static void check(const board *b, softsh_stats *stats)
             sum += difference;
             most = difference <= most ? most : difference;
         }
-        print_message("%-36s%-14s occluded %.3f, most %.6f, mean %.7f\n", b->name, hierarchy ? "hierarchy" : "", shadow,
-                      most, sum / pixels);
+        print_message("%-36s%-8s%-14s occluded %.3f, most %.6f, mean %.7f\n", b->name, walk ? "walk" : "strips",
+                      hierarchy ? "hierarchy" : "", shadow, most, sum / pixels);
         assert_true(shadow > 0.01);
         assert_true(most <= most_limit && sum <= mean_limit * pixels);
         sight_destroy(&view);

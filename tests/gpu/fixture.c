@@ -183,6 +183,7 @@ void lamp_create(const lamp_info *info, lamp *out)
         .accel = info->accel,
         .ysm_join = info->ysm_join,
         .outlines = info->outlines,
+        .dual_grids = info->dual_grids,
         .name = "test",
     };
 

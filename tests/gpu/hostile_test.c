@@ -176,6 +176,7 @@ static void visibilities_are_numbers(void **state)
          .merge = SOFTSH_MERGE_MAXIMUM,
          .budget = 5,
          .no_hierarchy = 1},
+        {.technique = SOFTSH_TECHNIQUE_CONTOUR, .search = SOFTSH_SEARCH_WALK},
     };
     static attack a;
     static float visibility[LARGEST * LARGEST];
@@ -197,6 +198,7 @@ static void visibilities_are_numbers(void **state)
                 random_attack(&seed, width, height, &a);
                 a.eye.normals = normals ? a.normals : NULL;
                 a.lamp.outlines = settings[k].outline != 0 || settings[k].reconstruction > SOFTSH_RECONSTRUCTION_JOINED;
+                a.lamp.dual_grids = settings[k].search == SOFTSH_SEARCH_WALK;
                 lamp_create(&a.lamp, &l);
                 eye_create(&a.eye, &e);
                 sight_run(&view, &l, &e, &a.options, visibility, &stats);

@@ -47,7 +47,8 @@ void readback_create(const lamp *l, readback *out)
     out->width = header->size.x;
     out->height = header->size.y;
     out->layers = header->size.z;
-    softshi_layout_occluders((VkExtent2D){out->width, out->height}, out->layers, o->join_texels, o->outlines, &layout);
+    softshi_layout_occluders((VkExtent2D){out->width, out->height}, out->layers, o->join_texels, o->outlines,
+                             o->dual_grids, &layout);
     out->top = layout.top;
     out->join = layout.join;
     out->wide_built = plan->built.x;
@@ -70,6 +71,9 @@ void readback_create(const lamp *l, readback *out)
     memcpy(out->a, &header->a, sizeof out->a);
     out->delta = header->light.z;
     out->epsilon = header->light.w;
+    out->dual_offset = (size_t)layout.dual_offset;
+    out->dual_texels = (size_t)layout.dual_texels;
+    memcpy(out->duals, layout.duals, sizeof out->duals);
     memcpy(out->fold_levels, layout.folds, sizeof out->fold_levels);
     out->layer_fold_words = (size_t)layout.layer_fold_words;
     out->bits = copy_range(&o->block, o->layout.bits.offset, o->layout.bits.size);
@@ -106,14 +110,27 @@ bool readback_folds(const readback *r, uint32_t layer, uint32_t level, uint32_t 
 
 uint32_t readback_thin(const readback *r, uint32_t level, uint32_t x, uint32_t y)
 {
-    return r->bits[r->pyramid_offsets[level] - r->pyramid_offsets[2] +
-                   (size_t)y * reference_hsm_size(r->width, level) + x];
+    return r
+        ->bits[r->pyramid_offsets[level] - r->pyramid_offsets[2] + (size_t)y * reference_hsm_size(r->width, level) + x];
 }
 
 reference_range readback_wide(const readback *r, uint32_t level, uint32_t x, uint32_t y)
 {
     return r->ranges[r->wide_offset + (size_t)(level - 1) * r->wide_texels +
                      (size_t)y * reference_hsm_size(r->width, r->join) + x];
+}
+
+uint32_t readback_dual_join(const readback *r, uint32_t level)
+{
+    return r->join > level ? r->join - level : 0;
+}
+
+reference_range readback_dual(const readback *r, uint32_t layer, uint32_t level, uint32_t node_level, uint32_t x,
+                              uint32_t y)
+{
+    const uint32_t join = readback_dual_join(r, level), shift = node_level < join ? node_level : join;
+    const size_t row = reference_hsm_size(reference_hsm_size(r->width, level) + 1, shift);
+    return r->ranges[r->dual_offset + layer * r->dual_texels + r->duals[node_level][level] + y * row + x];
 }
 
 void sight_read_areas(sight *s, uint32_t width, uint32_t height, float *areas, bool *undecided)

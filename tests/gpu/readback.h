@@ -13,8 +13,10 @@ typedef struct readback {
     size_t pyramid_texels, wide_offset;
     uint32_t quads[16]; /* of fan depths, where levels begin */
     size_t layer_quads;
-    float *samples;                   /* as the device has them */
-    float a[4], delta, epsilon;     /* of the light */
+    float *samples;                  /* as the device has them */
+    float a[4], delta, epsilon;      /* of the light */
+    size_t dual_offset, dual_texels; /* of the ranges; where the dual grids begin, how many of each layer */
+    uint32_t duals[16][16];          /* by level of nodes and of samples */
     uint32_t *bits, fold_levels[16]; /* words; where the levels' folds begin */
     size_t layer_fold_words;
     float *fan_depth; /* of level 0, layer after layer */
@@ -34,6 +36,13 @@ bool readback_folds(const readback *r, uint32_t layer, uint32_t level, uint32_t 
 uint32_t readback_thin(const readback *r, uint32_t level, uint32_t x, uint32_t y);
 /* Over all layers, at the resolution of level `join`, of wide level `level`, which counts from 1. */
 reference_range readback_wide(const readback *r, uint32_t level, uint32_t x, uint32_t y);
+
+/* Level from which nodes of a sample level's dual grid are no longer aligned. */
+uint32_t readback_dual_join(const readback *r, uint32_t level);
+/* Node (x, y) of a level of the dual grid over the samples of another; counted in steps of the smaller of 2^node_level
+ * and 2^join cells, from the cells before the map's first samples. */
+reference_range readback_dual(const readback *r, uint32_t layer, uint32_t level, uint32_t node_level, uint32_t x,
+                              uint32_t y);
 
 /* What the post filter of a view's last run worked on: area occlusions of the pixels of a width x height render area,
  * and whether a pixel's tile was undecided. Areas of the other tiles mean nothing. */

@@ -1,5 +1,5 @@
-/* What a budget's samples would miss: bits bit for bit against brute force over the device's own depths, and bars thinner
- * than the distance of samples, which keep their shadows wherever they lie. */
+/* What a budget's samples would miss: bits bit for bit against brute force over the device's own depths, and bars
+ * thinner than the distance of samples, which keep their shadows wherever they lie. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,8 +27,8 @@ static float covered(const readback *r, int64_t x0, int64_t y0, int64_t side)
     return nearest;
 }
 
-/* Numbers in section 5 of docs/numerics.md. Squares are looked for where half blocks begin; those reaching out of the map
- * are made of what half blocks at its border hold. */
+/* Numbers in section 5 of docs/numerics.md. Squares are looked for where half blocks begin; those reaching out of the
+ * map are made of what half blocks at its border hold. */
 static bool misses(const readback *r, uint32_t level, uint32_t x, uint32_t y)
 {
     const int64_t block = (int64_t)1 << level, half = block / 2;
@@ -86,7 +86,8 @@ static void bits_say_what_samples_miss(void **state)
         lamp_info info = {.layer_count = 1 + k % 2, .place = {.width = width, .height = height}, .outlines = k % 4 > 1};
         float *depth[2];
         /* In the light's plane, and behind it. */
-        info.light = (softsh_light){.struct_size = sizeof info.light, .half_u = {0.9, 0.2, 0}, .half_v = {-0.1, 0.45, 0}};
+        info.light =
+            (softsh_light){.struct_size = sizeof info.light, .half_u = {0.9, 0.2, 0}, .half_v = {-0.1, 0.45, 0}};
         info.light.center[2] = k % 3 ? 0.0 : -0.5;
         reference_look_at(at, target, up, info.view);
         for (uint32_t i = 0; i < info.layer_count; i++) {
@@ -149,8 +150,8 @@ static void bar_create(double angle, double width, double shift, scene *s)
     scene_cast(s, surfaces, 2);
 }
 
-/* Kernels are 103 texels wide: samples are 16 texels apart for a budget of 8, four with refinement. Microquads need two of
- * them on a bar. */
+/* Kernels are 103 texels wide: samples are 16 texels apart for a budget of 8, four with refinement. Microquads need two
+ * of them on a bar. */
 static void bars_keep_their_shadows(void **state)
 {
     static const struct {

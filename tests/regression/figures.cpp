@@ -51,6 +51,7 @@ std::vector<Technique> technique_list()
         parse_technique("contour", {"budget=16"}),
         parse_technique("contour", {"budget=16", "layers=1"}),
         parse_technique("contour", {"budget=16", "layers=1", "sparse=on"}),
+        parse_technique("contour", {"budget=16", "layers=1", "search=walk"}),
     };
     for (const char *variant : {"accel=hsm", "accel=mssm", "hierarchy=off", "filter=2", "merge=max"})
         list.push_back(parse_technique("bitmask", {"primitive=micropatch", "budget=32", variant}));
