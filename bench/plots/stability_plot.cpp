@@ -31,7 +31,7 @@ std::vector<Plot> stability_plots(const Report &report)
         if (measure(row, "degrees") && row.technique.name != "copy")
             acne.rows.push_back(row);
         if (const auto mean = measure(row, "mean_largest_jump")) {
-            jumps.groups.push_back(long_name(row.technique));
+            jumps.groups.push_back(row.case_name + ": " + long_name(row.technique));
             jumps.series[0].values.push_back(mean);
             jumps.series[1].values.push_back(measure(row, "p99_largest_jump"));
         }

@@ -48,6 +48,8 @@ const std::vector<std::string> contestants = {
     "contour layers=1 budget=16",
     "contour layers=1 budget=32",
     "contour layers=1",
+    "contour layers=1 reconstruction=folds",
+    "contour reconstruction=folds budget=32",
     "contour layers=1 budget=8 sparse=on",
     "contour layers=1 budget=12 sparse=on",
     "contour layers=1 budget=16 sparse=on",

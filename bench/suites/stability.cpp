@@ -60,10 +60,11 @@ std::map<std::string, double> summary(const Motion &motion)
 }
 
 // The light, and with it the map, moves along its own axis by one texel's width at the scene's middle.
-void move_light(Bench &bench, const std::vector<Technique> &techniques, const SceneCaseOptions &size, int steps)
+void move_light(Bench &bench, const char *scene, const std::vector<Technique> &techniques, const SceneCaseOptions &size,
+                int steps)
 {
     const SceneOptions options;
-    const Scene start = make_scene("balls", options);
+    const Scene start = make_scene(scene, options);
     const auto bench_case = bench.load(start, size, 0);
     Case &data = bench_case->data;
     std::vector<std::unique_ptr<Estimator>> estimators;
@@ -172,18 +173,24 @@ void run_stability(Bench &bench)
         "bitmask primitive=microquad budget=16",
         "contour budget=16",
         "contour budget=16 sparse=on",
+        "contour budget=8",
+        "contour budget=8 refine=off",
         "auto",
     };
+    // Thin structures are where coarse samples blink.
+    std::vector<const char *> scenes = {"balls", "twigs"};
     if (bench.quick()) {
         angles = {0, 45, 80, 88};
         size = {80, 60, 256, 1};
         rays = 16;
         steps = 16;
         names = {"pcss", "bitmask primitive=micropatch budget=16", "auto"};
+        scenes = {"balls"};
     }
     const std::vector<Technique> techniques = bench.techniques(names);
-    bench.begin_suite("stability", angles.size() + static_cast<size_t>(steps / 8 + 1));
-    move_light(bench, techniques, size, steps);
+    bench.begin_suite("stability", angles.size() + scenes.size() * static_cast<size_t>(steps / 8 + 1));
+    for (const char *scene : scenes)
+        move_light(bench, scene, techniques, size, steps);
     for (const double degrees : angles)
         add_acne(bench, techniques, degrees, size, rays);
 }

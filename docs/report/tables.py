@@ -189,9 +189,9 @@ def skip(device):
 
 def motion(device):
     keys = ("changing_pixels", "mean_largest_jump", "p99_largest_jump", "largest_jump", "mean_travel_to_and_fro")
-    lines = [[rows.name(row)] + [number(row["measures"].get(key), 3) for key in keys]
+    lines = [[rows.case(row), rows.name(row)] + [number(row["measures"].get(key), 3) for key in keys]
              for row in device.of("stability") if "changing_pixels" in row.get("measures", {})]
-    return table(["technique", "pixels that change", "mean of their largest jumps", "99 %", "largest",
+    return table(["scene", "technique", "pixels that change", "mean of their largest jumps", "99 %", "largest",
                   "mean of what goes to and fro"], lines)
 
 
