@@ -12,7 +12,7 @@
 enum { SOFTSHI_NAME_SIZE = 64 };
 
 typedef struct softshi_hierarchy_pipelines {
-    softshi_pipeline convert, sample, reduce, merge, plan, widen_first, widen, thin, fold, dual_first, dual;
+    softshi_pipeline convert, sample, reduce, merge, plan, widen_first, widen, thin_first, thin, fold, dual_first, dual;
 } softshi_hierarchy_pipelines;
 
 struct softsh_occluders {

@@ -21,8 +21,8 @@ softsh_result softshi_hierarchy_create(softsh_occluders *o)
         {SOFTSHI_SHADER_HIERARCHY_CONVERT, 0, &p->convert}, {SOFTSHI_SHADER_HIERARCHY_SAMPLE, 0, &p->sample},
         {SOFTSHI_SHADER_HIERARCHY_REDUCE, 0, &p->reduce},   {SOFTSHI_SHADER_HIERARCHY_MERGE, 0, &p->merge},
         {SOFTSHI_SHADER_HIERARCHY_PLAN, 0, &p->plan},       {SOFTSHI_SHADER_HIERARCHY_WIDEN, 1, &p->widen_first},
-        {SOFTSHI_SHADER_HIERARCHY_WIDEN, 0, &p->widen},     {SOFTSHI_SHADER_HIERARCHY_THIN, 0, &p->thin},
-        {SOFTSHI_SHADER_HIERARCHY_FOLD, 0, &p->fold},
+        {SOFTSHI_SHADER_HIERARCHY_WIDEN, 0, &p->widen},     {SOFTSHI_SHADER_HIERARCHY_THIN, 1, &p->thin_first},
+        {SOFTSHI_SHADER_HIERARCHY_THIN, 0, &p->thin},       {SOFTSHI_SHADER_HIERARCHY_FOLD, 0, &p->fold},
     };
     for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
         if (list[i].shader == SOFTSHI_SHADER_HIERARCHY_FOLD && !o->outlines)
@@ -38,8 +38,8 @@ softsh_result softshi_hierarchy_create(softsh_occluders *o)
 void softshi_hierarchy_destroy(softsh_occluders *o)
 {
     softshi_hierarchy_pipelines *p = &o->pipelines;
-    softshi_pipeline *const all[] = {&p->convert,     &p->sample, &p->reduce, &p->merge, &p->plan,
-                                     &p->widen_first, &p->widen,  &p->thin,   &p->fold};
+    softshi_pipeline *const all[] = {&p->convert,     &p->sample, &p->reduce,     &p->merge, &p->plan,
+                                     &p->widen_first, &p->widen,  &p->thin_first, &p->thin,  &p->fold};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         softshi_pipeline_destroy(o->context, all[i]);
 }
@@ -122,11 +122,15 @@ void softshi_hierarchy_record_levels(softshi_recorder *recorder, const softsh_oc
         .groups = {1, 1, 1},
     };
     softshi_record_pass(recorder, &plan);
-    if (layout->thin_words > 0) {
-        const uint32_t groups = divide_up((uint32_t)layout->pyramid_texels, SS_SAMPLE_GROUP);
+    for (uint32_t later = 0; later < 2 && layout->thin_words > 0; later++) {
+        /* Level 1, then all others, of which the last two have one group of blocks each. */
+        const uint32_t lanes = later == 0 ? softshi_level_size(extent.width, 3) * softshi_level_size(extent.height, 3)
+                               : layout->top < 4 ? 2
+                                                 : (uint32_t)layout->pyramid_texels - layout->offsets[4] + 2;
+        const uint32_t groups = divide_up(lanes, SS_SAMPLE_GROUP);
         const softshi_pass thin = {
-            .pipeline = &o->pipelines.thin,
-            /* Of the ranges only the pyramid, but both are one view. */
+            .pipeline = later ? &o->pipelines.thin : &o->pipelines.thin_first,
+            /* Of the ranges only the pyramid, but all of them are one view. */
             .reads = SOFTSHI_HEADER | SOFTSHI_FAN_DEPTH | SOFTSHI_PYRAMID | SOFTSHI_WIDE | SOFTSHI_DUAL,
             .writes = SOFTSHI_BITS,
             .groups = {groups < SS_DISPATCH_WIDTH ? groups : SS_DISPATCH_WIDTH, divide_up(groups, SS_DISPATCH_WIDTH),
