@@ -2,9 +2,9 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_GOOGLE_include_directive : require
-// Contours as contour_evaluate has them, but cut where neighbours that occlude are not one surface: each side ends half a step beyond
-// its last sample, at its own depth. What is cut apart overlaps on the light; of the area of all contours only the share counts that
-// a pattern of samples finds covered, once. docs/numerics.md, section 10. One lane per pixel of the active list.
+// Contours as contour_evaluate has them, but cut where neighbours that occlude are not one surface: each side ends half a step
+// beyond its last sample, at its own depth. What is cut apart overlaps on the light; of the area of all contours only the share
+// counts that a pattern of samples finds covered, once. docs/numerics.md, section 10. One lane per pixel of the active list.
 #include "ss_types.h"
 #include "ss_specialization.glsl"
 #include "ss_occluder_bindings.glsl"
@@ -29,8 +29,8 @@ layout(push_constant) uniform ss_push
     ss_evaluate_push push;
 };
 
-// Cells, their edges and the lines of samples these cross, of all layers: drivers end shaders that run too long, the software driver
-// silently after 65,535 rounds of all loops. Depth buffers of noise may have more; what they would hide is not looked at.
+// Cells, their edges and the lines of samples these cross, of all layers: drivers end shaders that run too long, the software
+// driver silently after 65,535 rounds of all loops. Depth buffers of noise may have more; what they would hide is not looked at.
 const uint MOST_ROUNDS = 40000u;
 
 ss_light_map light_map;
@@ -91,8 +91,8 @@ vec2 to_unit_square(vec2 at)
     return (at - middle) * (0.5 / (middle * occ.extent.x)) + 0.5;
 }
 
-// One cell after the other, one run of joined corners of it after the other, and for the edge that closes the run the lines of samples
-// it crosses.
+// One cell after the other, one run of joined corners of it after the other, and for the edge that closes the run the lines of
+// samples it crosses.
 void add_cells(ss_grid grid, ss_folds folds, int x0, int y0, uint rows)
 {
     uint cells = 0u, starts = 0u, joints = 0u;

@@ -58,7 +58,8 @@ float nearest_square(ivec2 block, uint level)
 // Over all layers: the first one's farthest, the nearest of all that is before the light.
 vec2 range_of(uint level, ivec2 at)
 {
-    const vec2 range = ss_range_at(occ.size.w * occ.strides.y + occ.pyramid[level].x + uint(at.y * (last_of(level).x + 1) + at.x));
+    const uint in_level = uint(at.y * (last_of(level).x + 1) + at.x);
+    const vec2 range = ss_range_at(occ.size.w * occ.strides.y + occ.pyramid[level].x + in_level);
     return vec2(range.x, occ.light.z > 0.0 ? min(range.y, occ.light.w / occ.light.z) : range.y);
 }
 

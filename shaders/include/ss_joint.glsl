@@ -16,7 +16,8 @@ bool ss_is_cut(ss_grid grid, vec3 receiver, ivec2 at, ivec2 step)
         return apart <= -spacing * max(k0, k1);
     }
     // On planes the differences before and after are the same. What is not steep cannot turn over within the light.
-    const float step_g = g1 - g0, before = g0 - ss_sample_depth(grid, at - step), after = ss_sample_depth(grid, at + 2 * step) - g1;
+    const float step_g = g1 - g0;
+    const float before = g0 - ss_sample_depth(grid, at - step), after = ss_sample_depth(grid, at + 2 * step) - g1;
     const float reach = along_u ? abs(occ.a.x) + abs(occ.a.y) : abs(occ.a.z) + abs(occ.a.w);
     const bool steep = abs(step_g) * reach >= spacing * (occ.light.w - occ.light.z * max(g0, g1));
     return steep && min(abs(step_g - before), abs(step_g - after)) > 0.5 * abs(step_g);

@@ -13,6 +13,7 @@
 #include "contour_case.h"
 #include "reference_contour.h"
 #include "reference_hierarchy.h"
+#include "reference_separate.h"
 
 static int compare_edges(const void *a, const void *b)
 {
@@ -349,13 +350,66 @@ static void packets_give_what_pixels_give(void **unused)
     assert_true(2 * together < alone);
 }
 
+/* Where no cell folds, nothing is cut: contours are the joined ones, and cover nothing twice. On planes of any slope
+ * second differences cut nothing either. */
+static void smooth_surfaces_are_not_cut(void **unused)
+{
+    (void)unused;
+    static float g[texels];
+    uint64_t state = 8;
+    uint32_t smooth = 0, folded = 0;
+    for (int round = 0; round < 80; ++round) {
+        const reference_map map = build_map((setup_kind)(round % setup_count), round < 40 ? 1e-4 : 0.6, 0);
+        reference_settings settings = random_settings(&state, SOFTSH_PRIMITIVE_MICROPATCH);
+        reference_dual_grid grid;
+        settings.aggregation = SOFTSH_AGGREGATION_SAMPLED;
+        random_map(&state, &map, g);
+        assert_true(reference_dual_grid_create(&grid, &map, &settings, g));
+        const bool folds = reference_dual_grid_node(&grid, grid.level_count - 1, -1, -1)->folds;
+        smooth += !folds;
+        folded += folds;
+        for (int k = 0; k < 20; ++k) {
+            const reference_receiver receiver = random_receiver(&state, &map);
+            reference_contour joined = {0};
+            reference_occlusion o;
+            reference_separate s;
+            uint64_t covered = 0;
+            assert_true(reference_contour_extract(&grid, &map, &settings, &receiver, 1, all_samples(&grid),
+                                                  REFERENCE_EXTRACT_SCAN, NULL, &joined));
+            reference_contour_occlusion(&grid, &map, &settings, &receiver, &joined, &o);
+            reference_separate_layer(&grid, &map, &settings, &receiver, SOFTSH_RECONSTRUCTION_FOLDS, &s);
+            for (int i = 0; i < 256; ++i)
+                covered += s.covered[i];
+            assert_true(covered <= s.windings && s.edges >= joined.count);
+            if (!folds)
+                assert_true(s.edges == joined.count && fabs(s.area - o.area) < 1e-9);
+            reference_contour_free(&joined);
+        }
+        reference_dual_grid_destroy(&grid);
+
+        const double slope =
+            (fan_depth(&map, 1.0) - fan_depth(&map, 0.0)) * reference_random_range(&state, -0.02, 0.02);
+        for (int i = 0; i < texels; ++i)
+            g[i] = (float)(fan_depth(&map, 0.6) + slope * (i % width - i / width));
+        assert_true(reference_dual_grid_create(&grid, &map, &settings, g));
+        const reference_receiver receiver = random_receiver(&state, &map);
+        for (int32_t y = 1; y + 2 < (int32_t)grid.rows; ++y)
+            for (int32_t x = 1; x + 2 < (int32_t)grid.columns; ++x)
+                for (int axis = 0; axis < 2; ++axis)
+                    assert_false(reference_is_cut(&grid, &map, &settings, &receiver,
+                                                  SOFTSH_RECONSTRUCTION_SECOND_DIFFERENCES, x, y, axis));
+        reference_dual_grid_destroy(&grid);
+    }
+    assert_true(smooth > 20 && folded > 20);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nodes_bound_their_samples),     cmocka_unit_test(block_statuses_are_never_wrong),
         cmocka_unit_test(walks_visit_every_cell_once),   cmocka_unit_test(cells_are_cut_the_same_way_all_around),
         cmocka_unit_test(lone_texels_are_diamonds),      cmocka_unit_test(every_extraction_gives_one_contour),
-        cmocka_unit_test(packets_give_what_pixels_give),
+        cmocka_unit_test(packets_give_what_pixels_give), cmocka_unit_test(smooth_surfaces_are_not_cut),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
