@@ -4,6 +4,7 @@
 #
 #   balls.png       the scene `balls` with technique auto
 #   techniques.png  one crop of it: hard, pcss, auto, ray-traced
+#   thin.png        the shadow of the scene `twigs`: ray-traced, contours with a budget of 8, the same without refinement
 #   model.png       MODEL with auto, and ray-traced; left alone if no model is given. The one kept here is the Khronos
 #                   glTF sample asset FlightHelmet (CC0)
 #
@@ -35,6 +36,15 @@ done
 oiiotool "$work/last-truth.png" --cut $crop -o "$work/truth.png"
 oiiotool "$work/hard.png" "$work/pcss.png" "$work/auto.png" "$work/truth.png" --mosaic:pad=6 4x1 \
     -o "$images/techniques.png"
+
+crop=390x195+195+240
+"$render" --scene twigs --size 720x540 --out "$work/thin.png" --truth "${RAYS:-1024}"
+"$render" --scene twigs --size 720x540 --technique contour --set budget=8 --out "$work/refined.png"
+"$render" --scene twigs --size 720x540 --technique contour --set budget=8 --set refine=off --out "$work/coarse.png"
+for picture in thin-truth refined coarse; do
+    oiiotool "$work/$picture.png" --cut $crop -o "$work/$picture.png"
+done
+oiiotool "$work/thin-truth.png" "$work/refined.png" "$work/coarse.png" --mosaic:pad=6 3x1 -o "$images/thin.png"
 
 if [ $# -eq 2 ]; then
     crop=560x680+430+100
