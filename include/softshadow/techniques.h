@@ -109,7 +109,7 @@ typedef struct softsh_settings {
     uint32_t sparse;        /* nonzero: evaluate every second pixel of every second row, and of the rest those whose
                                neighbours differ or lie on other surfaces; interpolate the others. Ignored with
                                filter_passes */
-    softsh_packet packet;                 /* contour only */
+    softsh_packet packet;   /* contour only */
     softsh_packet_cost packet_cost;       /* contour only; `softshadow-bench tune` measures it */
     softsh_reconstruction reconstruction; /* contour only; other than joined: without packets, for sampled depth and on
                                              occluders with `outlines` */

@@ -67,16 +67,17 @@ uint may_be_cut(ss_folds folds, int x0, int k, int y)
     return here != 0u ? below | right << 1 | above << 2 | left << 3 : 0u;
 }
 
-// Which corners of a cell are joined to the next one, counter-clockwise from the lower left: bits.
+// Which corners of a cell are joined to the next one, counter-clockwise from the lower left: bits. No loop: it would count as one
+// more round for each round of the loop around it, even where there is nothing to do.
 uint find_joints(ss_grid grid, ivec2 cell, uint occluding, uint cuts)
 {
-    uint joints = occluding & (occluding >> 1 | occluding << 3 & 8u);
-    for (uint todo = joints & cuts; todo != 0u; todo &= todo - 1u) {
-        const int i = max(findLSB(todo), 0);
+    const uint joints = occluding & (occluding >> 1 | occluding << 3 & 8u);
+    uint cut = 0u;
+    [[unroll]] for (int i = 0; i < 4; i++) {
         const ivec2 lower = cell + ivec2(i == 1 ? 1 : 0, i == 2 ? 1 : 0), step = (i & 1) == 0 ? ivec2(1, 0) : ivec2(0, 1);
-        joints &= ~(uint(todo != 0u && ss_is_cut(grid, receiver, lower, step)) << i);
+        cut |= uint(ss_is_cut(grid, receiver, lower, step)) << i;
     }
-    return joints;
+    return joints & ~(cut & cuts);
 }
 
 vec2 project(vec3 at)

@@ -108,7 +108,8 @@ uint ss_refined_level(ss_kernel_texels t, uint level)
                       ss_bits_at(upper + uint(b.x));
     [[unroll]] for (int i = 0; i < SS_MOST_REFINED; i++) {
         const uint finer = max(level, 1u) - 1u;
-        const bool refine = (thin >> (level + SS_THIN_LEVELS) & 1u) != 0u && level > 0u && finer >= frame.quality.y && uint(extent >> finer) < ss_most_samples();
+        const bool misses = level > 0u && (thin >> (level + SS_THIN_LEVELS) & 1u) != 0u;
+        const bool refine = misses && finer >= frame.quality.y && uint(extent >> finer) < ss_most_samples();
         level = refine ? finer : level;
     }
     return level;

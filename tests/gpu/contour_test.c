@@ -76,6 +76,7 @@ static void board_create(const board *b, scene *s)
     s->lamp.light.half_v[0] = -b->half_v * sin(b->turn);
     s->lamp.light.half_v[1] = b->half_v * cos(b->turn);
     s->lamp.place = (placement){.width = b->map_width, .height = b->map_height};
+    s->lamp.outlines = b->settings.reconstruction > SOFTSH_RECONSTRUCTION_JOINED;
     s->lamp.layer_count = 1;
     s->eye.place = (placement){.width = b->side, .height = b->side};
     reference_look_at(nowhere, floor_at, up, s->lamp.view);
@@ -245,6 +246,8 @@ static void most_edges(void **state)
     static const board boards[] = {
         {"126 samples of checkers", checkers, 210, 210, 3.0, 3.0, .side = 8, .seen = 1.5},
         {"170 texels of checkers, level 1", wide_checkers, 284, 284, 3.0, 3.0, .side = 8, .seen = 1.5, .level = 1},
+        {"126 samples of checkers, cut apart", checkers, 210, 210, 3.0, 3.0, .side = 8, .seen = 1.5,
+         .settings = {.reconstruction = SOFTSH_RECONSTRUCTION_FOLDS}},
         {"62 samples of checkers, four layers", checkers, 104, 104, 3.0, 3.0, .layers = 4, .side = 8, .seen = 1.5,
          .settings = {.merge = SOFTSH_MERGE_MAXIMUM}},
     };
