@@ -293,7 +293,7 @@ softsh_result softshi_camera_space_create(const softsh_context *context, const s
     normal_map[3] = (float)map->normal_sign;
     out->camera.x = (float)depth.far_depth;
     out->camera.w = (float)softshi_depth_precision(camera->depth_format);
-    out->flags[0].x = depth.far_depth == 0.0 ? SS_FLAG_REVERSED : 0u;
+    out->flags.x = depth.far_depth == 0.0 ? SS_FLAG_REVERSED : 0u;
     return SOFTSH_SUCCESS;
 }
 

@@ -16,7 +16,7 @@ static_assert(sizeof(ss_occluders) == 1536, "std430"); /* ss_plan begins here: a
 static_assert(sizeof(ss_plan) == 16 * SS_MAX_LEVELS + 16, "std430");
 static_assert(offsetof(ss_frame, camera) == 128, "std430");
 static_assert(offsetof(ss_frame, area) == 160, "std430");
-static_assert(sizeof(ss_frame) == 272, "std430");
+static_assert(sizeof(ss_frame) == 256, "std430");
 static_assert(offsetof(ss_control, stats) == 128, "std430");
 static_assert(sizeof(ss_control) == 256, "std430");
 static_assert(sizeof(ss_convert_push) == 32, "std430");

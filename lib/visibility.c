@@ -115,7 +115,7 @@ static void fill_frame(const softsh_view *v, const softsh_visibility_info *info,
     frame->tiles.x = (area.extent.width + SS_TILE_X - 1) / SS_TILE_X;
     frame->tiles.y = (area.extent.height + SS_TILE_Y - 1) / SS_TILE_Y;
     frame->tiles.z = frame->tiles.x * frame->tiles.y;
-    frame->flags[0].x |= (info->occluders->map.orthographic ? SS_FLAG_ORTHOGRAPHIC : 0u) |
+    frame->flags.x |= (info->occluders->map.orthographic ? SS_FLAG_ORTHOGRAPHIC : 0u) |
                          (info->occluders->light.disc ? SS_FLAG_DISC : 0u) |
                          (info->override_bias ? SS_FLAG_OVERRIDE_BIAS : 0u);
     softshi_layout_lists(&v->settings, frame->tiles.z, &frame->lists);

@@ -187,7 +187,8 @@ void main()
     ss_packet packet;
     ss_packet_begin(r.uv, r.gradient, r.side, r.eta, packet);
     ss_packet_add(packet, r.uv, receiver.z, r.side * r.g + band, r.gradient, r.drift);
-    const bool disc = (ss_flags & SS_FLAG_DISC) != 0u, mirrored = determinant(light_map.matrix) < 0.0;
+    const bool disc = (ss_flags & SS_FLAG_DISC) != 0u;
+    const float turn = ss_turn(light_map);
     float mask_occlusion = 0.0, area_occlusion = 0.0;
     any_occludes = false;
     rounds = edges = bridges = 0u;
@@ -197,13 +198,13 @@ void main()
     for (uint layer = 0u; layer < ss_layers(); layer++) {
         add_layer(packet, layer, samples);
         if (SS_PATTERN_SIDE != 0) {
-            ss_winding_to_mask(mirrored);
+            ss_winding_to_mask(int(turn));
             ss_winding_clear(0u);
         }
         if (SS_MERGE_MAXIMUM || layer + 1u == ss_layers()) {
             if (SS_PATTERN_SIDE != 0)
                 mask_occlusion = max(mask_occlusion, ss_mask_occlusion(disc));
-            const float outlines = mirrored ? -outline_area : outline_area;
+            const float outlines = turn * outline_area;
             area_occlusion = max(area_occlusion, (outlines > 0.0 ? outlines : 0.0) + (bridge_area > 0.0 ? bridge_area : 0.0));
             ss_mask_clear();
             outline_area = bridge_area = 0.0;

@@ -35,7 +35,7 @@ const uint MOST_ROUNDS = 40000u;
 
 ss_light_map light_map;
 vec3 receiver; // u, v, biased g
-bool mirrored; // contours run the other way on the light
+float turn;
 float area;
 uint rounds, edges;
 bool any_touches;
@@ -128,7 +128,8 @@ void add_cells(ss_grid grid, ss_folds folds, int x0, int y0, uint rows)
             area += ss_edge_area(p, q);
             any_touches = any_touches || ss_edge_touches(p, q);
             edges++;
-            crossing = ss_winding_edge(mirrored ? to : from, mirrored ? from : to);
+            crossing = ss_winding_edge(from, to);
+            crossing.sign *= uint(int(turn));
         }
         if (crossing.line < crossing.end)
             ss_winding_step(crossing);
@@ -173,10 +174,10 @@ void main()
     float band;
     receiver = vec3(r.uv, ss_biased(r, samples.level, band));
     light_map = ss_to_light(half_side, half_side);
+    turn = ss_turn(light_map);
     ss_packet packet;
     ss_packet_begin(r.uv, r.gradient, r.side, r.eta, packet);
     ss_packet_add(packet, r.uv, receiver.z, r.side * r.g + band, r.gradient, r.drift);
-    mirrored = determinant(light_map.matrix) < 0.0;
     float occlusion = 0.0;
     rounds = edges = 0u;
     any_touches = false;
@@ -185,7 +186,7 @@ void main()
         area = 0.0;
         ss_winding_clear(SS_WINDING_SIGNED);
         add_layer(packet, layer, samples);
-        const float signed_area = mirrored ? -area : area;
+        const float signed_area = turn * area;
         // What contours cover, over how often they do; a layer that is added counts where no other one has covered.
         const uvec2 covered = ss_winding_cover(!SS_MERGE_MAXIMUM);
         const float share = covered.y > 0u ? float(covered.x) / float(covered.y) : 1.0;

@@ -9,9 +9,8 @@ layout(set = SS_SET_IO, binding = SS_BIND_FRAME, std140) uniform ss_frame_buffer
 {
     ss_frame frame;
 };
-// SS_FLAG_*. Read through an index that is always 0 but that no compiler sees through: the software driver compiles a shader
-// anew for every dispatch if a branch depends on a uniform alone.
-uint ss_flags = frame.flags[gl_WorkGroupID.z].x;
+// SS_FLAG_*; the sum is as in ss_layers.
+uint ss_flags = frame.flags.x + gl_WorkGroupID.z;
 
 layout(set = SS_SET_IO, binding = SS_BIND_CONTROL, std430) buffer ss_control_buffer
 {

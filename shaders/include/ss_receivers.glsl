@@ -85,9 +85,9 @@ void ss_add_edge(ss_grid grid, ivec2 cell, uint corners, bool any)
 // The areas of one layer are known.
 void ss_end_layer()
 {
-    const float orientation = determinant(light_map.matrix) < 0.0 ? -1.0 : 1.0;
+    const float turn = ss_turn(light_map);
     [[unroll]] for (int i = 0; i < N; i++) {
-        const float signed_area = orientation * area[i];
+        const float signed_area = turn * area[i];
         const float a = signed_area > 0.0 ? min(signed_area, 1.0) : 0.0; // not a number is nothing
         occlusion[i] = SS_MERGE_MAXIMUM ? max(occlusion[i], a) : min(occlusion[i] + a, 1.0);
         area[i] = 0.0;

@@ -37,6 +37,12 @@ struct ss_light_map
     vec2 constant;
 };
 
+// 1, or -1 if contours run the other way on a mirrored light.
+float ss_turn(ss_light_map l)
+{
+    return determinant(l.matrix) < 0.0 ? -1.0 : 1.0;
+}
+
 // To `middle` +- `half_side` across the light.
 ss_light_map ss_to_light(float middle, float half_side)
 {

@@ -75,11 +75,11 @@ void ss_winding_step(inout ss_crossing c)
     c.line++;
 }
 
-// Adds the samples that are wound around to the mask. Contours of a mirrored light run the other way.
-void ss_winding_to_mask(bool mirrored)
+// Adds the samples that are wound around to the mask; `turn` is 1, or -1 if contours run the other way on the light.
+void ss_winding_to_mask(int turn)
 {
     for (int line = 0; line < SS_WINDING_LINES; line++) {
-        const uint word = mirrored ? 0u - ss_winding[line] : ss_winding[line];
+        const uint word = ss_winding[line] * uint(turn);
         uint bits = (word | word >> 1 | word >> 2 | word >> 3) & 0x11111111u;
         // From every fourth bit to every second or to each.
         bits = (bits | bits >> 2) & 0x05050505u;

@@ -164,7 +164,7 @@ SS_STRUCT(ss_frame)
     SS_IVEC4 area;         /* render area: x, y, width, height */
     SS_UVEC4 tiles;        /* tiles in x, y, their number; unused */
     SS_UVEC4 quality;      /* budget (0: none), least level, pixels in the render area, first value of sub-lights */
-    SS_UVEC4 flags[2];     /* [0].x: SS_FLAG_*; [1] unused */
+    SS_UVEC4 flags;        /* x: SS_FLAG_*; unused */
     SS_VEC4 cost;          /* Yang et al. 2009: Q_n, Q_e, Q_v of equation 6, T_d for equation 5 */
     SS_UVEC4 lists;        /* where they begin in the tiles buffer: single pixels, large and small packets, interpolated */
 }
