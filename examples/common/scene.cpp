@@ -86,6 +86,16 @@ Scene finish_scene(const SceneSetup &setup, const SceneOptions &options)
     return scene;
 }
 
+void place_light(Scene &scene, const glm::dvec3 &centre, const glm::dvec3 &target, const glm::dvec3 &up)
+{
+    const double half_u = glm::length(scene.light.half_u), half_v = glm::length(scene.light.half_v);
+    // As in finish_scene.
+    scene.light = rectangle_light(centre, target, up, 1.0, 1.0);
+    scene.map = light_frustum(scene.light, scene.map_fov, scene.map_range, scene.map_behind);
+    scene.light.half_u *= half_u;
+    scene.light.half_v *= half_v;
+}
+
 Frustum camera_frustum(const Scene &scene, uint32_t width, uint32_t height)
 {
     const Camera &c = scene.camera;

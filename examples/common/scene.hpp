@@ -61,6 +61,9 @@ Scene make_scene(const std::string &name, const SceneOptions &options = {});
 // A mesh file, scaled to a largest extent of 2.8 and set on a floor.
 Scene make_model_scene(const std::string &path, const SceneOptions &options = {});
 
+// Puts the scene's rectangular light, and the map with it, elsewhere; `up` as for rectangle_light.
+void place_light(Scene &scene, const glm::dvec3 &centre, const glm::dvec3 &target, const glm::dvec3 &up);
+
 Frustum camera_frustum(const Scene &scene, uint32_t width, uint32_t height);
 // The map of part (i, j) of the scene's rectangular light, split into grid x grid parts.
 Frustum sub_light_frustum(const Scene &scene, uint32_t grid, uint32_t i, uint32_t j);

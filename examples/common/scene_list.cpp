@@ -188,6 +188,31 @@ SceneSetup umbra()
     return s;
 }
 
+// A room lit from inside a lantern: a cage that is close to the light on all sides. One map sees the floor of it.
+SceneSetup lantern()
+{
+    SceneSetup s = start("lantern", 4.0, {0, 2.2, 6.4}, {0, 1.4, 0});
+    const double radius = 0.35, half = 0.35, height = 1.7;
+    for (const double y : {-half, half})
+        s.objects.append(make_cylinder(radius + 0.02, 0.02, 48, slate), at(0, height + y, 0));
+    const int bars = 12;
+    for (int i = 0; i < bars; i++) {
+        const double angle = radians(360.0 * (i + 0.5) / bars);
+        s.objects.append(make_cylinder(0.014, half, 16, slate),
+                         at(radius * std::cos(angle), height, radius * std::sin(angle)));
+    }
+    s.objects.append(make_cylinder(0.02, 0.7, 16, slate), at(0, height + half + 0.7, 0));
+    s.objects.append(make_box({0.35, 0.35, 0.35}, ochre), at(-1.9, 0.35, 0.9) * turned(25.0, {0, 1, 0}));
+    s.objects.append(make_sphere(0.45, 48, 24, clay), at(1.7, 0.45, -0.8));
+    add_box(s.objects, {-4.0, 0, -3.1}, {4.0, 3.2, -3.0}, ivory);
+    add_box(s.objects, {-3.6, 0, -3.0}, {-3.5, 3.2, 4.0}, teal);
+    add_box(s.objects, {3.5, 0, -3.0}, {3.6, 3.2, 4.0}, teal);
+    set_light(s, {0, height, 0}, {0, 0, 0}, 0.08, 90.0);
+    s.map_range.near_plane = 0.1;
+    s.map_size = 512;
+    return s;
+}
+
 struct Entry {
     SceneName name;
     SceneSetup (*make)();
@@ -201,6 +226,7 @@ const Entry entries[] = {
     {{"silhouette", "occluders hidden from the light's centre by a smaller one above them"}, silhouette},
     {{"contact", "boxes and a cylinder resting on the floor"}, contact},
     {{"twigs", "thin rods in all directions"}, twigs},
+    {{"lantern", "a room lit from inside a cage"}, lantern},
     {{"lit", "gentle slopes, nothing in shadow"}, lit},
     {{"umbra", "all receivers under a big lid"}, umbra},
 };

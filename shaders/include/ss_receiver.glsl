@@ -7,6 +7,10 @@
 
 // Share of its own rise by which a neighbour may leave the plane before the plane may not tell that its front is turned away.
 const float SS_SMOOTH = 0.03;
+// Share of the steps to both sides by which they differ where a crease lies between, and how many times straighter the side of it
+// is that a pixel lies on.
+const float SS_CREASE = 0.15;
+const float SS_STRAIGHTER = 8.0;
 
 struct ss_receiver
 {
@@ -97,42 +101,72 @@ vec2 ss_clamp_gradient(vec2 gradient, float g)
     return clamp(ss_finite_gradient(gradient), -limit, limit);
 }
 
-// Difference in (u, v, g) to a neighbour; false if there is none.
-bool ss_neighbour_difference(ivec2 at, vec3 here, out vec3 difference)
+// Not a number is 0.
+float ss_clamp_depth(float depth)
 {
-    const float depth = ss_load_depth(at);
-    const vec4 h = ss_to_map(vec2(at) + 0.5, depth);
-    difference = h.xyz / h.w - here;
-    return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, frame.area.zw)) && ss_is_receiver(depth) &&
-           ss_is_in_front(h);
+    return depth >= 0.0 ? min(depth, 1.0) : 0.0;
 }
 
-// Gradient from the neighbour on each axis whose g is nearer. `smooth_surface` says whether all four neighbours agree on
-// the plane: noise and edges do not.
-vec2 ss_gradient_from_depth(ivec2 pixel, vec3 here, float eta, out float drift, out bool smooth_surface)
+// What a pixel's neighbour to one side tells about its plane.
+struct ss_neighbour
 {
-    vec3 d[4];
-    bool found[4];
+    bool found;
+    vec3 difference; // in (u, v, g)
+    float step;      // in device depth, which is affine in the pixel on a plane
+    float bend;      // by how much the step from the neighbour to the next one differs from that
+};
+
+ss_neighbour ss_look_at_neighbour(ivec2 pixel, ivec2 step, float depth, vec3 here)
+{
+    const ivec2 at = pixel + step;
+    const float depth_at = ss_load_depth(at), clamped_at = ss_clamp_depth(depth_at);
+    const vec4 h = ss_to_map(vec2(at) + 0.5, depth_at);
+    ss_neighbour n;
+    n.found = all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, frame.area.zw)) && ss_is_receiver(depth_at) &&
+              ss_is_in_front(h);
+    n.difference = h.xyz / h.w - here;
+    n.step = clamped_at - ss_clamp_depth(depth);
+    n.bend = abs(ss_clamp_depth(ss_load_depth(at + step)) - clamped_at - n.step);
+    return n;
+}
+
+// Of two neighbours on an axis the one whose g is nearer; but where a crease is between them, the one on the pixel's side of it.
+vec3 ss_choose_neighbour(ss_neighbour before, ss_neighbour after)
+{
+    const float rho = frame.camera.w;
+    const bool crease = abs(before.step + after.step) > SS_CREASE * (abs(before.step) + abs(after.step)) + 4.0 * rho;
+    const bool this_side = SS_STRAIGHTER * before.bend + rho < after.bend;
+    const bool other_side = SS_STRAIGHTER * after.bend + rho < before.bend;
+    const bool nearer = abs(before.difference.z) <= abs(after.difference.z);
+    const bool first = crease && (this_side || other_side) ? this_side : nearer;
+    return before.found && (!after.found || first) ? before.difference : after.difference;
+}
+
+// Gradient from a neighbour on each axis. `smooth_surface` says whether all four neighbours agree on the plane: noise and edges do
+// not.
+vec2 ss_gradient_from_depth(ivec2 pixel, float depth, vec3 here, float eta, out float drift, out bool smooth_surface)
+{
+    ss_neighbour n[4];
     for (int i = 0; i < 4; i++) {
         const int step = 2 * (i & 1) - 1;
-        found[i] = ss_neighbour_difference(pixel + (i < 2 ? ivec2(step, 0) : ivec2(0, step)), here, d[i]);
+        n[i] = ss_look_at_neighbour(pixel, i < 2 ? ivec2(step, 0) : ivec2(0, step), depth, here);
     }
-    const vec3 dx = found[0] && (!found[1] || abs(d[0].z) <= abs(d[1].z)) ? d[0] : d[1];
-    const vec3 dy = found[2] && (!found[3] || abs(d[2].z) <= abs(d[3].z)) ? d[2] : d[3];
+    const vec3 dx = ss_choose_neighbour(n[0], n[1]), dy = ss_choose_neighbour(n[2], n[3]);
     const float det = dx.x * dy.y - dx.y * dy.x;
     const float scale = dot(dx.xy, dx.xy) * dot(dy.xy, dy.xy);
     smooth_surface = false;
     drift = 0.0;
     // Two directions that differ by less than a thousandth of a radian do not span a plane.
-    if (!(found[0] || found[1]) || !(found[2] || found[3]) || !(det * det > 1e-6 * scale))
+    if (!(n[0].found || n[1].found) || !(n[2].found || n[3].found) || !(det * det > 1e-6 * scale))
         return vec2(0.0);
     const vec2 gradient = vec2(dx.z * dy.y - dy.z * dx.y, dy.z * dx.x - dx.z * dy.x) / det;
     // Both ends of a difference are precise to eta.
     drift = 2.0 * eta * inversesqrt(min(dot(dx.xy, dx.xy), dot(dy.xy, dy.xy)));
     smooth_surface = true;
     for (int i = 0; i < 4; i++)
-        smooth_surface = smooth_surface && found[i] &&
-                         abs(d[i].z - dot(gradient, d[i].xy)) <= 4.0 * eta + SS_SMOOTH * dot(abs(gradient), abs(d[i].xy));
+        smooth_surface = smooth_surface && n[i].found &&
+                         abs(n[i].difference.z - dot(gradient, n[i].difference.xy)) <=
+                             4.0 * eta + SS_SMOOTH * dot(abs(gradient), abs(n[i].difference.xy));
     return gradient;
 }
 
@@ -179,7 +213,7 @@ ss_receiver ss_load_receiver(ivec2 pixel)
     r.drift = 0.0;
     bool smooth_surface = false;
     if (from_depth)
-        r.gradient = ss_gradient_from_depth(pixel, here, ss_eta(h, vec2(0.0)), r.drift, smooth_surface);
+        r.gradient = ss_gradient_from_depth(pixel, depth, here, ss_eta(h, vec2(0.0)), r.drift, smooth_surface);
     // Before the steepest planes are made less steep: their sides would change.
     const vec2 steep = ss_finite_gradient(r.gradient);
     if (smooth_surface)

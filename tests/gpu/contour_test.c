@@ -344,11 +344,62 @@ static void surfaces_apart(void **state)
     scene_destroy(&s);
 }
 
+/* Two walls and a floor that all of the light is in front of: of a pixel at a crease one neighbour lies on the other
+ * surface, and the plane through that would be in shadow. The camera moves by parts of a pixel. */
+static void corners_of_rooms(void **state)
+{
+    enum { SIDE = 64, MAP = 128, STEPS = 8 };
+    static const reference_surface surfaces[3] = {
+        {.infinite = true, .center = {0, 0, -10}, .u = {1, 0, 0}, .v = {0, 1, 0}},
+        {.infinite = true, .center = {3, 0, 0}, .u = {0, 1, 0}, .v = {0, 0, 1}},
+        {.infinite = true, .center = {0, -2.5, 0}, .u = {1, 0, 0}, .v = {0, 0, 1}},
+    };
+    static float visibility[SIDE * SIDE];
+    const double nowhere[3] = {0, 0, 0}, up[3] = {0, 1, 0}, floor_at[3] = {0, 0, -10}, corner[3] = {3, -2.5, -10};
+    const sight_info info = {.settings = {.technique = SOFTSH_TECHNIQUE_CONTOUR}, .width = SIDE, .height = SIDE};
+    sight view;
+    float darkest = 1.0f;
+    (void)state;
+    sight_create(&info, &view);
+    for (int step = 0; step < STEPS; step++) {
+        const double at[3] = {-1.0 + 0.013 * step, 1.5 + 0.007 * step, -4.0};
+        scene s;
+        lamp l;
+        eye e;
+        memset(&s, 0, sizeof s);
+        s.lamp.light = (softsh_light){.struct_size = sizeof s.lamp.light, .half_u = {0.4, 0, 0}, .half_v = {0, 0.4, 0}};
+        s.lamp.place = (placement){.width = MAP, .height = MAP};
+        s.lamp.layer_count = 1;
+        s.eye.place = (placement){.width = SIDE, .height = SIDE};
+        reference_look_at(nowhere, floor_at, up, s.lamp.view);
+        reference_perspective((const double[4]){-0.6, 0.6, -0.6, 0.6}, 1.0, 30.0, REFERENCE_DEPTH_NORMAL,
+                              s.lamp.layers[0].projection);
+        reference_look_at(at, corner, up, s.eye.view);
+        reference_perspective((const double[4]){-0.3, 0.3, -0.3, 0.3}, 0.1, 30.0, REFERENCE_DEPTH_NORMAL,
+                              s.eye.projection);
+        scene_cast(&s, surfaces, 3);
+        s.eye.normals = NULL;
+        lamp_create(&s.lamp, &l);
+        eye_create(&s.eye, &e);
+        sight_run(&view, &l, &e, NULL, visibility, NULL);
+        /* At the border a pixel may have no neighbour on its own surface. */
+        for (uint32_t y = 1; y + 1 < SIDE; y++)
+            for (uint32_t x = 1; x + 1 < SIDE; x++)
+                darkest = fminf(darkest, visibility[y * SIDE + x]);
+        eye_destroy(&e);
+        lamp_destroy(&l);
+        scene_destroy(&s);
+    }
+    sight_destroy(&view);
+    print_message("darkest pixel in the corners of a room: %.4f\n", (double)darkest);
+    assert_true(darkest >= 0.95f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(awkward_occluders), cmocka_unit_test(borders),        cmocka_unit_test(wide_kernels),
-        cmocka_unit_test(most_edges),        cmocka_unit_test(surfaces_apart),
+        cmocka_unit_test(corners_of_rooms), cmocka_unit_test(awkward_occluders), cmocka_unit_test(borders),
+        cmocka_unit_test(wide_kernels),     cmocka_unit_test(most_edges),        cmocka_unit_test(surfaces_apart),
     };
     return cmocka_run_group_tests(tests, fixture_setup, fixture_teardown);
 }

@@ -111,13 +111,37 @@ static void derive_along(const reference_map *map, const double world[3], const 
     out[2] = map->perspective ? -map->axis_length * dw / (w * w) : -reference_dot(map->axis, step);
 }
 
+static bool in_image(const reference_camera *camera, int64_t x, int64_t y)
+{
+    return x >= 0 && y >= 0 && x < (int64_t)camera->width && y < (int64_t)camera->height;
+}
+
+static double depth_at(const reference_camera *camera, const reference_camera_image *image, int64_t x, int64_t y)
+{
+    return image->depth[(size_t)y * camera->width + (size_t)x];
+}
+
+/* In [0, 1], and of the image's nearest pixel. */
+static double clamped_depth(const reference_camera *camera, const reference_camera_image *image, int64_t x, int64_t y)
+{
+    const int64_t right = (int64_t)camera->width - 1, bottom = (int64_t)camera->height - 1;
+    const double depth = depth_at(camera, image,
+                                  x < 0       ? 0
+                                  : x > right ? right
+                                              : x,
+                                  y < 0        ? 0
+                                  : y > bottom ? bottom
+                                               : y);
+    return depth >= 0.0 ? fmin(depth, 1.0) : 0.0;
+}
+
 static bool locate(const reference_map *map, const reference_camera *camera, const reference_camera_image *image,
                    int64_t x, int64_t y, double uvg[3])
 {
     double world[3], derivative[3];
-    if (x < 0 || y < 0 || x >= (int64_t)camera->width || y >= (int64_t)camera->height)
+    if (!in_image(camera, x, y))
         return false;
-    const double depth = image->depth[(size_t)y * camera->width + (size_t)x];
+    const double depth = depth_at(camera, image, x, y);
     return reference_camera_unproject(camera, x, y, depth, world, derivative) && reference_map_project(map, world, uvg);
 }
 
@@ -125,26 +149,43 @@ static bool locate(const reference_map *map, const reference_camera *camera, con
 typedef struct neighbourhood {
     bool counts[4];
     double offset[4][3]; /* (u, v, g) from the centre */
+    double step[4];      /* of device depth from the centre */
+    double bend[4];      /* how much the step from there to the next pixel differs from that */
+    double precision;    /* of device depth */
 } neighbourhood;
 
 static void look_around(const reference_map *map, const reference_camera *camera, const reference_camera_image *image,
-                        int64_t x, int64_t y, const double center[3], neighbourhood *out)
+                        int64_t x, int64_t y, const double center[3], double precision, neighbourhood *out)
 {
     static const int steps[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
+    out->precision = precision;
     for (int k = 0; k < 4; ++k) {
         double uvg[3];
+        double depths[3];
+        for (int i = 0; i < 3; ++i)
+            depths[i] = clamped_depth(camera, image, x + i * steps[k][0], y + i * steps[k][1]);
+        out->step[k] = depths[1] - depths[0];
+        out->bend[k] = fabs(depths[2] - depths[1] - out->step[k]);
         out->counts[k] = locate(map, camera, image, x + steps[k][0], y + steps[k][1], uvg);
         for (int i = 0; out->counts[k] && i < 3; ++i)
             out->offset[k][i] = uvg[i] - center[i];
     }
 }
 
-/* Of neighbours `first` and first + 1 the one whose g differs less, the first of two equals; NULL without any. */
+/* Of neighbours `first` and first + 1 the one on the pixel's side of a crease, else that whose g differs less, the
+ * first of two equals; NULL without any. */
 static const double *difference(const neighbourhood *around, int first)
 {
     const double *const before = around->offset[first], *const after = around->offset[first + 1];
     if (!around->counts[first] || !around->counts[first + 1])
         return around->counts[first] ? before : around->counts[first + 1] ? after : NULL;
+    const double *const step = around->step + first, *const bend = around->bend + first;
+    if (fabs(step[0] + step[1]) > 0.15 * (fabs(step[0]) + fabs(step[1])) + 4.0 * around->precision) {
+        if (8.0 * bend[0] + around->precision < bend[1])
+            return before;
+        if (8.0 * bend[1] + around->precision < bend[0])
+            return after;
+    }
     return fabs(after[2]) < fabs(before[2]) ? after : before;
 }
 
@@ -251,7 +292,7 @@ void reference_receiver_derive(reference_receiver *out, const reference_map *map
     } else {
         neighbourhood around;
         const double flat[2] = {0.0, 0.0};
-        look_around(map, camera, image, x, y, uvg, &around);
+        look_around(map, camera, image, x, y, uvg, bias->camera_precision, &around);
         const double flat_eta = reference_eta(map, bias, uvg[2], moved[2], flat);
         gradient_from_depth(&around, flat_eta, out->gradient, &out->drift);
         smooth = around.counts[0] && around.counts[1] && around.counts[2] && around.counts[3] &&
