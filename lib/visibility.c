@@ -116,8 +116,8 @@ static void fill_frame(const softsh_view *v, const softsh_visibility_info *info,
     frame->tiles.y = (area.extent.height + SS_TILE_Y - 1) / SS_TILE_Y;
     frame->tiles.z = frame->tiles.x * frame->tiles.y;
     frame->flags.x |= (info->occluders->map.orthographic ? SS_FLAG_ORTHOGRAPHIC : 0u) |
-                         (info->occluders->light.disc ? SS_FLAG_DISC : 0u) |
-                         (info->override_bias ? SS_FLAG_OVERRIDE_BIAS : 0u);
+                      (info->occluders->light.disc ? SS_FLAG_DISC : 0u) |
+                      (info->override_bias ? SS_FLAG_OVERRIDE_BIAS : 0u);
     softshi_layout_lists(&v->settings, frame->tiles.z, &frame->lists);
     const softsh_packet_cost *cost = &v->settings.packet_cost;
     frame->cost = (ss_vec4){cost->node, cost->edge, cost->projection, cost->divergence};

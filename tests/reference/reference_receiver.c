@@ -124,14 +124,11 @@ static double depth_at(const reference_camera *camera, const reference_camera_im
 /* In [0, 1], and of the image's nearest pixel. */
 static double clamped_depth(const reference_camera *camera, const reference_camera_image *image, int64_t x, int64_t y)
 {
-    const int64_t right = (int64_t)camera->width - 1, bottom = (int64_t)camera->height - 1;
-    const double depth = depth_at(camera, image,
-                                  x < 0       ? 0
-                                  : x > right ? right
-                                              : x,
-                                  y < 0        ? 0
-                                  : y > bottom ? bottom
-                                               : y);
+    x = x < 0 ? 0 : x;
+    y = y < 0 ? 0 : y;
+    x = x < (int64_t)camera->width ? x : (int64_t)camera->width - 1;
+    y = y < (int64_t)camera->height ? y : (int64_t)camera->height - 1;
+    const double depth = depth_at(camera, image, x, y);
     return depth >= 0.0 ? fmin(depth, 1.0) : 0.0;
 }
 
