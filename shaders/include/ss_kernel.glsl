@@ -57,12 +57,12 @@ uint ss_most_samples()
     return uint((SS_IS_PATCH ? 240.0 : SS_IS_CONTOUR ? 128.0 : 160.0) * inversesqrt(float(ss_layers())));
 }
 
+// The least level at which so many texels are at most the budget's samples. No division: drivers may do that lane by lane.
 uint ss_extent_level(int extent)
 {
     const uint most = ss_most_samples(), budget = frame.quality.x == 0u ? most : min(frame.quality.x, most);
-    uint level = 0u;
-    if (uint(extent) > budget)
-        level = uint(findMSB((uint(extent) - 1u) / budget)) + 1u;
+    const uint steps = uint(extent) - 1u, shift = uint(max(findMSB(steps) - findMSB(budget), 0));
+    const uint level = shift + uint(steps >= budget << shift);
     return min(max(level, frame.quality.y), occ.levels.x);
 }
 
