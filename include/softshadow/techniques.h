@@ -64,9 +64,9 @@ typedef enum softsh_reconstruction {
 
 /* Neighbouring pixels that share one search for contours; contour only, see Yang et al. 2009. Packets that do not pay,
  * or are not of one contour, are evaluated pixel by pixel. With `sparse`, packets are of every second pixel of 4 x 4,
- * and of what is left of them. No result depends on it but for rounding, for corners of samples beside the kernel, and
- * with 3X3, whose pixels are classified in blocks of their own, for the shortcuts that classification takes
- * (docs/numerics.md, section 8). */
+ * and of the others where none of them is interpolated. No result depends on it but for rounding, for corners of
+ * samples beside the kernel, and with 3X3, whose pixels are classified in blocks of their own, for the shortcuts that
+ * classification takes (docs/numerics.md, section 8). */
 typedef enum softsh_packet {
     SOFTSH_PACKET_DEFAULT = 0, /* what is fast on this kind of device: 4X4 on CPUs, 1X1 elsewhere */
     SOFTSH_PACKET_1X1 = 1,

@@ -72,7 +72,7 @@ softshi_packets softshi_settings_packets(const softsh_settings *s)
     if (!softshi_settings_in_packets(s) || s->packet == SOFTSH_PACKET_1X1)
         return p;
     if (s->sparse) {
-        /* Every second pixel of every second row of a block, and then what is left of it. */
+        /* Every second pixel of every second row of a block, and then the others where none is interpolated. */
         p.side[SS_LIST_SMALL] = 2;
         p.side[SS_LIST_LARGE] = 4;
         p.split = s->packet == SOFTSH_PACKET_2X2;

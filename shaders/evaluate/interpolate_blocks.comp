@@ -5,7 +5,7 @@
 // Active pixels between those that were evaluated: the mean of their neighbours where these lie on the same surface and differ
 // little, otherwise on to the second round of evaluation. Penumbrae are smooth, and the smoother the wider they are (the adaptive
 // precision of Guennebaud et al. 2007); no noise, and nothing that moves with the camera but the lattice. One lane per block of
-// 4 x 4 pixels; what is left of a block is a packet again.
+// 4 x 4 pixels. Of a steep penumbra a whole block is left, which is a packet again; elsewhere those that have no contour in common.
 #include "ss_types.h"
 #include "ss_specialization.glsl"
 #include "ss_occluder_bindings.glsl"
@@ -19,8 +19,7 @@
 
 layout(local_size_x = SS_EVALUATE_GROUP) in;
 
-// Fewer pixels than these are not worth a packet.
-const uint LEAST_PACKET = 4u;
+const uint BETWEEN_MASK = 0xffffu & ~SS_LATTICE_MASK;
 
 // The 3 x 3 pixels of the lattice in and around the block, which its other pixels share.
 float lattice_depth[9], lattice_visible[9];
@@ -44,7 +43,7 @@ void main()
         lattice_visible[i] = ss_near_visible(at);
     }
     uint left = 0u, interpolated = 0u;
-    for (uint todo = mask & ~SS_LATTICE_MASK; todo != 0u; todo &= todo - 1u) {
+    for (uint todo = mask & BETWEEN_MASK; todo != 0u; todo &= todo - 1u) {
         const uint bit = uint(findLSB(todo));
         const ivec2 away = ivec2(bit & 3u, bit >> 2), pixel = corner + away;
         const ivec4 steps = ss_neighbour_steps(pixel);
@@ -59,7 +58,7 @@ void main()
         interpolated += uint(may);
         left |= uint(!may) << bit;
     }
-    if (SS_PACKET > 1 && uint(bitCount(left)) >= LEAST_PACKET) {
+    if (SS_PACKET > 1 && left == BETWEEN_MASK) {
         ss_append_packet(1u, SS_LIST_LARGE, id, g_hi, left);
         left = 0u;
     }

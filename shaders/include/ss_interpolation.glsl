@@ -59,15 +59,16 @@ bool ss_interpolates(ivec2 pixel, float g_hi, float here, vec4 depths, vec4 stor
     const vec4 h = ss_to_map(vec2(pixel) + 0.5, here);
     const vec3 uvg = h.xyz / h.w;
     const float den = occ.light.w - occ.light.z * uvg.z;
-    // The nearest occluder in this pixel's own kernel: no farther than that its neighbours' may be.
+    const bool plain = all(equal(stored, vec4(SS_ALL_LIT))) || all(equal(stored, vec4(SS_ALL_DARK)));
+    // Beside penumbrae the nearest occluder in this pixel's own kernel: no farther than that its neighbours' may be.
     const ss_samples s = ss_kernel_samples(ss_kernel_box(uvg.xy, uvg.xy, uvg.z, den, g_hi));
-    const float nearest = ss_range(s.texel_lo, s.texel_hi).y;
-    const vec2 reach = ss_light_reach() * ((ss_clip_to_light(SS_HIERARCHY ? min(g_hi, nearest) : g_hi) - uvg.z) / den);
+    const float nearest = SS_HIERARCHY && !plain ? min(g_hi, ss_range(s.texel_lo, s.texel_hi).y) : g_hi;
+    const vec2 reach = ss_light_reach() * ((ss_clip_to_light(nearest) - uvg.z) / den);
     const bool overlap = ss_kernels_overlap(pixel, uvg.xy, a, depths.y, reach) &&
                          ss_kernels_overlap(pixel, uvg.xy, b, depths.w, reach);
     // Between kernels in which nothing occludes, or everything, there can be nothing else. But beside ones whose occluders just
     // miss the light, a narrow shadow may lie between.
-    const bool tells = (least < 1.0 && most > 0.0) || all(equal(stored, vec4(SS_ALL_LIT))) || all(equal(stored, vec4(SS_ALL_DARK)));
+    const bool tells = plain || (least < 1.0 && most > 0.0);
     const bool inside = all(greaterThan(pixel, ivec2(0))) && all(lessThan(pixel + 1, frame.area.zw));
     mean = 0.25 * (seen.x + seen.y + seen.z + seen.w);
     return smooth_surface && inside && most - least <= SS_MOST_DIFFERENCE && tells && overlap;
