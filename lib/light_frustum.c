@@ -5,6 +5,7 @@
 #include <softshadow/softshadow.h>
 
 #include "matrix.h"
+#include "validate.h"
 
 static void normalize(double v[3])
 {
@@ -16,16 +17,14 @@ static void normalize(double v[3])
 softsh_result softsh_light_frustum_create(const softsh_light *light, const double target[3], double radius,
                                           double behind, softsh_light_frustum *out)
 {
-    if (!light || light->struct_size != sizeof *light || !target || !out || out->struct_size != sizeof *out)
+    if (!target || !out || out->struct_size != sizeof *out)
         return SOFTSH_ERROR_INVALID_ARGUMENT;
-    if ((unsigned)light->shape > SOFTSH_LIGHT_SPHERE)
-        return SOFTSH_ERROR_INVALID_ARGUMENT;
-    if (light->shape != SOFTSH_LIGHT_RECTANGLE)
-        return SOFTSH_ERROR_UNSUPPORTED;
-    if (!softshi_all_finite(light->center, 3) || !softshi_all_finite(light->half_u, 3) ||
-        !softshi_all_finite(light->half_v, 3) || !softshi_all_finite(target, 3) ||
-        !(radius > 0.0 && radius < HUGE_VAL) || !(behind >= 0.0 && behind < HUGE_VAL) ||
-        !(softshi_length3(light->half_u) > 0.0) || !(softshi_length3(light->half_v) > 0.0))
+    const softsh_result checked = softshi_check_rectangle_light(light);
+    if (checked != SOFTSH_SUCCESS)
+        return checked;
+    if (!softshi_all_finite(target, 3) || !(radius > 0.0 && radius < HUGE_VAL) ||
+        !(behind >= 0.0 && behind < HUGE_VAL) || !(softshi_length3(light->half_u) > 0.0) ||
+        !(softshi_length3(light->half_v) > 0.0))
         return SOFTSH_ERROR_INVALID_ARGUMENT;
     double right[3], down[3], forward[3], to_target[3];
     memcpy(right, light->half_u, sizeof right);

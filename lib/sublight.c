@@ -3,7 +3,7 @@
 
 #include <softshadow/softshadow.h>
 
-#include "matrix.h"
+#include "validate.h"
 
 softshi_sublight softshi_sublight_of(const softsh_map *map)
 {
@@ -45,15 +45,11 @@ bool softshi_sublight_same_grid(const softshi_sublight *a, const softshi_subligh
 softsh_result softsh_sublight_create(const softsh_light *light, const uint32_t grid[2], const uint32_t cell[2],
                                      softsh_light *out)
 {
-    if (!light || light->struct_size != sizeof *light || !grid || !cell || !out || out->struct_size != sizeof *out)
+    if (!grid || !cell || !out || out->struct_size != sizeof *out)
         return SOFTSH_ERROR_INVALID_ARGUMENT;
-    if ((unsigned)light->shape > SOFTSH_LIGHT_SPHERE)
-        return SOFTSH_ERROR_INVALID_ARGUMENT;
-    if (light->shape != SOFTSH_LIGHT_RECTANGLE)
-        return SOFTSH_ERROR_UNSUPPORTED;
-    if (!softshi_all_finite(light->center, 3) || !softshi_all_finite(light->half_u, 3) ||
-        !softshi_all_finite(light->half_v, 3))
-        return SOFTSH_ERROR_INVALID_ARGUMENT;
+    const softsh_result checked = softshi_check_rectangle_light(light);
+    if (checked != SOFTSH_SUCCESS)
+        return checked;
     for (int axis = 0; axis < 2; axis++)
         if (grid[axis] == 0 || grid[axis] > SOFTSH_MAX_SUBLIGHTS || cell[axis] >= grid[axis])
             return SOFTSH_ERROR_INVALID_ARGUMENT;

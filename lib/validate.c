@@ -228,6 +228,17 @@ softsh_result softshi_check_light(const softsh_context *context, const softsh_li
     return SOFTSH_SUCCESS;
 }
 
+softsh_result softshi_check_rectangle_light(const softsh_light *light)
+{
+    if (!light || light->struct_size != sizeof *light || (unsigned)light->shape > SOFTSH_LIGHT_SPHERE)
+        return SOFTSH_ERROR_INVALID_ARGUMENT;
+    if (light->shape != SOFTSH_LIGHT_RECTANGLE)
+        return SOFTSH_ERROR_UNSUPPORTED;
+    const bool finite = softshi_all_finite(light->center, 3) && softshi_all_finite(light->half_u, 3) &&
+                        softshi_all_finite(light->half_v, 3);
+    return finite ? SOFTSH_SUCCESS : SOFTSH_ERROR_INVALID_ARGUMENT;
+}
+
 /* `owner` and the last three names make up the fields' names. */
 static softsh_result check_depth_input(const softsh_context *context, const char *owner, const char *const names[3],
                                        VkImageView view, VkFormat format, VkImageLayout layout)

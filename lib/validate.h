@@ -11,6 +11,8 @@ softsh_result softshi_check_occluders_info(const softsh_context *context, const 
 softsh_result softshi_check_view_info(const softsh_context *context, const softsh_view_info *info, softsh_view **out);
 softsh_result softshi_check_settings(const softsh_context *context, const softsh_settings *settings);
 softsh_result softshi_check_light(const softsh_context *context, const softsh_light *light);
+/* For what needs no context, and so cannot say more: a rectangle of finite numbers, whose sides may be zero. */
+softsh_result softshi_check_rectangle_light(const softsh_light *light);
 /* Maps of one light, which was checked: roles, indices, formats, rectangles; the map's size goes to `extent`. */
 softsh_result softshi_check_maps(const softsh_context *context, const softsh_build_info *info, VkExtent2D max_extent,
                                  uint32_t max_layers, VkExtent2D *extent);

@@ -480,8 +480,7 @@ void several_maps(Bench &bench, const SceneCaseOptions &size, const Effort &effo
                 visits[k] += static_cast<double>(rows.at(names[k]).stats->visited);
             }
         }
-        claim.measured = light.what;
-        claim.measured += ": ";
+        claim.measured = text("%s%s: ", bench.quick() ? "the first of " : "", light.what);
         for (size_t k = 1; k < names.size(); k++)
             claim.measured += text("%s%s %.1f times as fast, %.0f times fewer visits", k > 1 ? "; " : "", called[k],
                                    times[0] / times[k], visits[0] / visits[k]);
