@@ -75,8 +75,7 @@ static softsh_result plan_build(const softsh_occluders *o, const softsh_build_in
     if (result == SOFTSH_SUCCESS)
         result = softshi_light_space_create(context, &light, &plan->maps[0], &plan->light);
     if (result == SOFTSH_SUCCESS)
-        softshi_layout_occluders(plan->extent, info->map_count, o->join_texels, o->outlines, o->dual_grids,
-                                 &plan->layout);
+        softshi_layout_occluders(plan->extent, info->map_count, o->join_texels, o->folds, o->dual_grids, &plan->layout);
     return result;
 }
 

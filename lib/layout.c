@@ -68,7 +68,7 @@ static void layout_dual_grids(VkExtent2D extent, uint32_t join_texels, softshi_o
         }
 }
 
-void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_texels, bool outlines, bool dual_grids,
+void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_texels, bool folds, bool dual_grids,
                               softshi_occluder_layout *out)
 {
     memset(out, 0, sizeof *out);
@@ -86,7 +86,7 @@ void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_
         out->layer_quads += (VkDeviceSize)softshi_level_quads(extent.width, i) * softshi_level_size(extent.height, i);
     }
     out->thin_words = out->top < 2 ? 0 : out->pyramid_texels - out->offsets[2];
-    for (uint32_t i = 0; i <= out->top && outlines; i++) {
+    for (uint32_t i = 0; i <= out->top && folds; i++) {
         out->folds[i] = (uint32_t)(out->thin_words + out->layer_fold_words);
         out->layer_fold_words +=
             (VkDeviceSize)softshi_level_words(extent.width, i) * softshi_level_size(extent.height, i);

@@ -29,7 +29,7 @@ typedef struct softshi_occluder_layout {
     VkDeviceSize layer_quads;        /* of `fan_depth`, four depths each: a layer's levels 0 to top */
     uint32_t quads[SS_MAX_LEVELS];   /* first quad of a level's sampled fan depths */
     VkDeviceSize thin_words;         /* the first of `bits`: a word for each texel of the pyramid from level 2 on */
-    VkDeviceSize layer_fold_words;   /* of `bits`, of each layer; 0 without outlines */
+    VkDeviceSize layer_fold_words;   /* of `bits`, of each layer; 0 without folds */
     uint32_t folds[SS_MAX_LEVELS];   /* first word of a level's folds, of the first layer */
     uint32_t join;                   /* pyramid level the wide part starts from; `top` without one */
     uint32_t wide_levels;            /* 0 without a wide part */
@@ -42,7 +42,7 @@ typedef struct softshi_occluder_layout {
 } softshi_occluder_layout;
 
 /* `join_texels`: the most texels a side of the wide part; 0: no wide part (HSM), UINT32_MAX: an MSSM. */
-void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_texels, bool outlines, bool dual_grids,
+void softshi_layout_occluders(VkExtent2D extent, uint32_t layers, uint32_t join_texels, bool folds, bool dual_grids,
                               softshi_occluder_layout *out);
 
 /* A view's scratch. */

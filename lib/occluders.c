@@ -171,9 +171,9 @@ softsh_result softsh_occluders_create(softsh_context *context, const softsh_occl
         o->join_texels = 0;
     else if (info->accel == SOFTSH_ACCEL_MSSM)
         o->join_texels = UINT32_MAX;
-    o->outlines = info->outlines != 0;
+    o->folds = info->no_folds == 0;
     o->dual_grids = info->dual_grids != 0;
-    softshi_layout_occluders(o->max_extent, o->max_layers, o->join_texels, o->outlines, o->dual_grids, &o->layout);
+    softshi_layout_occluders(o->max_extent, o->max_layers, o->join_texels, o->folds, o->dual_grids, &o->layout);
     result = check_limits(o);
     if (result == SOFTSH_SUCCESS)
         result = softshi_block_create(context, &o->block, o->layout.buffer_size, o->name, "occluders");

@@ -23,7 +23,7 @@ struct softsh_occluders {
     uint32_t join_texels; /* as softshi_layout_occluders takes it */
     softshi_occluder_layout layout;
     softshi_block block;
-    bool outlines, dual_grids;
+    bool folds, dual_grids;
     VkBufferView depths, depth_quads, ranges, bits; /* fan depths one by one and by four; ranges; bits */
     VkDescriptorPool pool;
     VkDescriptorSet set;

@@ -113,7 +113,7 @@ softsh_result softshi_check_settings(const softsh_context *context, const softsh
         return INVALID("softsh_settings::min_level is %u, expected at most 13", s->min_level);
     if ((unsigned)s->packet > SOFTSH_PACKET_ADAPTIVE)
         return INVALID("softsh_settings::packet is %d, expected a softsh_packet", (int)s->packet);
-    if ((unsigned)s->reconstruction > SOFTSH_RECONSTRUCTION_SECOND_DIFFERENCES)
+    if ((unsigned)s->reconstruction > SOFTSH_RECONSTRUCTION_BACKS)
         return INVALID("softsh_settings::reconstruction is %d, expected a softsh_reconstruction",
                        (int)s->reconstruction);
     if (s->technique == SOFTSH_TECHNIQUE_CONTOUR && s->reconstruction > SOFTSH_RECONSTRUCTION_JOINED &&

@@ -55,10 +55,10 @@ static softsh_result check(const softsh_view *v, const softsh_visibility_info *i
         return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT,
                             "softsh_visibility_info::stats_offset is %llu, expected a multiple of 4",
                             (unsigned long long)info->stats_offset);
-    if (softshi_settings_need_folds(&v->settings) && !info->occluders->light.point && !info->occluders->outlines)
-        return softshi_fail(
-            context, SOFTSH_ERROR_INVALID_ARGUMENT,
-            "softsh_visibility_info::occluders was created without outlines, which the view's settings need");
+    if (softshi_settings_need_folds(&v->settings) && !info->occluders->light.point && !info->occluders->folds)
+        return softshi_fail(context, SOFTSH_ERROR_INVALID_ARGUMENT,
+                            "softsh_visibility_info::occluders was created with no_folds, but it must know which cells "
+                            "fold, which the view's settings need");
     if (v->settings.search == SOFTSH_SEARCH_WALK && !info->occluders->light.point && !info->occluders->dual_grids)
         return softshi_fail(
             context, SOFTSH_ERROR_INVALID_ARGUMENT,

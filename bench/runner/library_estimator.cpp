@@ -36,8 +36,8 @@ class LibraryEstimator final : public Estimator
             occluders.max_layers = static_cast<uint32_t>(maps_[0].size());
             occluders.max_recordings = static_cast<uint32_t>(maps_.size());
             occluders.accel = technique.accel;
-            occluders.outlines =
-                technique.library.outline || technique.library.reconstruction > SOFTSH_RECONSTRUCTION_JOINED;
+            occluders.no_folds = technique.library.technique != SOFTSH_TECHNIQUE_AUTO && !technique.library.outline &&
+                                 technique.library.reconstruction <= SOFTSH_RECONSTRUCTION_JOINED;
             occluders.dual_grids = technique.library.search == SOFTSH_SEARCH_WALK;
             occluders_.resize(reuse_ ? 1 : maps_.size());
             for (softsh_occluders *&o : occluders_)

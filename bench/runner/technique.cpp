@@ -148,13 +148,14 @@ const std::vector<Setting> &setting_list()
          [](Technique &t, const std::string &v) { t.library.no_refinement = !choose("refine", v, on_off); }},
         {"outline", "on | off: microquads by the outline of those that cannot fold", ON_AREA | ON_BITMASK,
          [](Technique &t, const std::string &v) { t.library.outline = choose("outline", v, on_off); }},
-        {"reconstruction", "joined | folds | second-differences: where surfaces are cut apart", ON_CONTOUR,
+        {"reconstruction", "joined | folds | second-differences: where surfaces are cut apart; or backs", ON_CONTOUR,
          [](Technique &t, const std::string &v) {
              t.library.reconstruction = static_cast<softsh_reconstruction>(
                  choose("reconstruction", v,
                         {{"joined", SOFTSH_RECONSTRUCTION_JOINED},
                          {"folds", SOFTSH_RECONSTRUCTION_FOLDS},
-                         {"second-differences", SOFTSH_RECONSTRUCTION_SECOND_DIFFERENCES}}));
+                         {"second-differences", SOFTSH_RECONSTRUCTION_SECOND_DIFFERENCES},
+                         {"backs", SOFTSH_RECONSTRUCTION_BACKS}}));
          }},
         {"packet", "1x1 | 2x2 | 3x3 | 4x4 | adaptive: pixels that share a search for contours", ON_CONTOUR,
          [](Technique &t, const std::string &v) {

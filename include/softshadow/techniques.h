@@ -12,7 +12,7 @@ extern "C" {
 #endif
 
 typedef enum softsh_technique {
-    SOFTSH_TECHNIQUE_AUTO = 0,    /* ignores all other settings */
+    SOFTSH_TECHNIQUE_AUTO = 0,    /* ignores all other settings; not on occluders with `no_folds` */
     SOFTSH_TECHNIQUE_AREA = 1,    /* accumulated areas of back-projected micro-occluders (overlaps count twice) */
     SOFTSH_TECHNIQUE_BITMASK = 2, /* Bitmask Soft Shadows, Schwarz and Stamminger 2007 */
     SOFTSH_TECHNIQUE_CONTOUR = 3  /* area within the contours of what occludes, Guennebaud et al. 2007 and Yang et al.
@@ -59,7 +59,9 @@ typedef enum softsh_reconstruction {
     SOFTSH_RECONSTRUCTION_JOINED = 1,  /* everywhere: one layer of a map casts a shadow without gaps */
     SOFTSH_RECONSTRUCTION_FOLDS = 2, /* unless the receiver sees them the other way round: what is near lies in front of
                                         what is far, as seen from the light's centre. Slower, the least error */
-    SOFTSH_RECONSTRUCTION_SECOND_DIFFERENCES = 3 /* unless fan depth jumps: leaks light where solid things overlap */
+    SOFTSH_RECONSTRUCTION_SECOND_DIFFERENCES = 3, /* unless fan depth jumps: leaks light where solid things overlap */
+    SOFTSH_RECONSTRUCTION_BACKS = 4 /* everywhere, and where the receiver sees a surface's back, what that hides is
+                                       estimated and added: nearly the error of folds at nearly the time of joined */
 } softsh_reconstruction;
 
 /* Neighbouring pixels that share one search for contours; contour only, see Yang et al. 2009. Packets that do not pay,
@@ -102,8 +104,8 @@ typedef struct softsh_settings {
     softsh_aggregation aggregation;
     softsh_merge merge;
     uint32_t budget;        /* about budget x budget micro-occluders per layer and pixel; 0 and large numbers:
-                               240 x 240 micropatches, 160 x 160 microquads or 128 x 128 samples of contours, shared
-                               by the layers; at most 4096 */
+                               240 x 240 micropatches, 160 x 160 microquads or 128 x 128 samples of contours (96 x 96
+                               with their backs), shared by the layers; at most 4096 */
     uint32_t min_level;     /* never evaluate below this level; 0 to 13; for comparisons */
     uint32_t filter_passes; /* post filter of section 3.1, 0 to 16; bitmask only */
     uint32_t sparse;        /* nonzero: evaluate every second pixel of every second row, and of the rest those whose
@@ -111,12 +113,12 @@ typedef struct softsh_settings {
                                filter_passes */
     softsh_packet packet;   /* contour only */
     softsh_packet_cost packet_cost;       /* contour only; `softshadow-bench tune` measures it */
-    softsh_reconstruction reconstruction; /* contour only; other than joined: without packets, for sampled depth and on
-                                             occluders with `outlines` */
+    softsh_reconstruction reconstruction; /* contour only; other than joined: for sampled depth, on occluders
+                                             without `no_folds`, and cut apart without packets */
     softsh_search search;                 /* contour only, and joined */
     uint32_t outline; /* nonzero: of microquads that cannot fold, only the outline of all of them is projected; the
                          result is the same. For area and bitmask, microquads, sampled depth and patterns up to
-                         16 x 16, without filter_passes, on occluders with `outlines`; contour ignores it */
+                         16 x 16, without filter_passes, not on occluders with `no_folds`; contour ignores it */
     uint32_t no_refinement; /* nonzero: keep to the budget's level also where something in the kernel is thinner than
                                the distance of its samples, and perhaps lose its shadow. By default such pixels are
                                evaluated one or two levels finer, at four times the work each. Sampled depth only */

@@ -165,8 +165,9 @@ typedef struct softsh_occluders_info {
     uint32_t max_layers;   /* 0 means 1; at most SOFTSH_MAX_LAYERS */
     softsh_accel accel;
     uint32_t ysm_join;       /* the YSM's full-resolution part has at most this many texels a side; 0 means 256 */
-    uint32_t outlines;       /* nonzero: views with softsh_settings::outline or reconstruction may use this light; a
-                                bit a texel */
+    uint32_t no_folds;       /* nonzero: save the bits of where surfaces fold, a sixth of a byte a texel and layer, and
+                                their time; only for views that are neither automatic nor have softsh_settings::outline
+                                or a reconstruction other than joined */
     uint32_t dual_grids;     /* nonzero: views with SOFTSH_SEARCH_WALK may use this light; 14 bytes a texel and layer
                                 with an HSM, some more with a YSM, 10 bytes a texel, layer and level with an MSSM */
     uint32_t max_recordings; /* the last so many builds may be pending or submitted again; 0 means 4, at most 1024 */

@@ -25,7 +25,7 @@ softsh_result softshi_hierarchy_create(softsh_occluders *o)
         {SOFTSHI_SHADER_HIERARCHY_THIN, 0, &p->thin},       {SOFTSHI_SHADER_HIERARCHY_FOLD, 0, &p->fold},
     };
     for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
-        if (list[i].shader == SOFTSHI_SHADER_HIERARCHY_FOLD && !o->outlines)
+        if (list[i].shader == SOFTSHI_SHADER_HIERARCHY_FOLD && !o->folds)
             continue;
         constants.values[SS_SPEC_COUNT] = list[i].from_fan_depth;
         const softsh_result result = softshi_pipeline_create(o->context, list[i].shader, &constants, list[i].pipeline);
@@ -79,7 +79,7 @@ void softshi_hierarchy_record_levels(softshi_recorder *recorder, const softsh_oc
                    divide_up(sample_groups, SS_DISPATCH_WIDTH), layers},
     };
     softshi_record_pass(recorder, &sample);
-    if (o->outlines) {
+    if (o->folds) {
         const uint32_t fold_groups = divide_up((uint32_t)layout->layer_fold_words, SS_SAMPLE_GROUP);
         const softshi_pass fold = {
             .pipeline = &o->pipelines.fold,

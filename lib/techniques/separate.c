@@ -8,9 +8,6 @@ softsh_result softshi_separate_create(softsh_view *view, const softshi_specializ
     /* What finds overlaps. */
     own.values[SS_SPEC_PATTERN_SIDE] = 16;
     own.values[SS_SPEC_JITTERED] = 1;
-    own.values[SS_SPEC_RECONSTRUCTION] = view->settings.reconstruction == SOFTSH_RECONSTRUCTION_SECOND_DIFFERENCES
-                                             ? SS_RECONSTRUCTION_SECOND_DIFFERENCES
-                                             : SS_RECONSTRUCTION_FOLDS;
     return softshi_pipeline_create(view->context, SOFTSHI_SHADER_SEPARATE_EVALUATE, &own,
                                    &view->pipelines.evaluate[SS_LIST_PIXELS]);
 }

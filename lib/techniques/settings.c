@@ -18,8 +18,11 @@ softsh_settings softshi_settings_resolve(const softsh_settings *settings, bool s
     if (settings)
         s = *settings;
     if (s.technique == SOFTSH_TECHNIQUE_AUTO)
-        s = (softsh_settings){
-            .struct_size = sizeof s, .technique = SOFTSH_TECHNIQUE_CONTOUR, .budget = 32, .sparse = 1};
+        s = (softsh_settings){.struct_size = sizeof s,
+                              .technique = SOFTSH_TECHNIQUE_CONTOUR,
+                              .reconstruction = SOFTSH_RECONSTRUCTION_BACKS,
+                              .budget = 32,
+                              .sparse = 1};
     if (s.packet == SOFTSH_PACKET_DEFAULT)
         s.packet = device_classes[software].packet;
     const softsh_packet_cost *cost = &device_classes[software].cost;
@@ -44,7 +47,8 @@ softsh_settings softshi_settings_resolve(const softsh_settings *settings, bool s
         s.filter_passes = 0;
     if (s.technique == SOFTSH_TECHNIQUE_CONTOUR)
         s.outline = 0;
-    if (!softshi_settings_in_packets(&s) || s.search == SOFTSH_SEARCH_DEFAULT)
+    if (s.technique != SOFTSH_TECHNIQUE_CONTOUR || s.reconstruction != SOFTSH_RECONSTRUCTION_JOINED ||
+        s.search == SOFTSH_SEARCH_DEFAULT)
         s.search = SOFTSH_SEARCH_STRIPS;
     if (s.filter_passes > 0)
         s.sparse = 0;
@@ -53,12 +57,14 @@ softsh_settings softshi_settings_resolve(const softsh_settings *settings, bool s
 
 bool softshi_settings_separate(const softsh_settings *s)
 {
-    return s->technique == SOFTSH_TECHNIQUE_CONTOUR && s->reconstruction != SOFTSH_RECONSTRUCTION_JOINED;
+    return s->technique == SOFTSH_TECHNIQUE_CONTOUR && (s->reconstruction == SOFTSH_RECONSTRUCTION_FOLDS ||
+                                                        s->reconstruction == SOFTSH_RECONSTRUCTION_SECOND_DIFFERENCES);
 }
 
 bool softshi_settings_need_folds(const softsh_settings *s)
 {
-    return s->outline || softshi_settings_separate(s);
+    return s->outline ||
+           (s->technique == SOFTSH_TECHNIQUE_CONTOUR && s->reconstruction != SOFTSH_RECONSTRUCTION_JOINED);
 }
 
 bool softshi_settings_in_packets(const softsh_settings *s)
@@ -100,12 +106,19 @@ softshi_specialization softshi_settings_specialize(const softsh_settings *s, boo
                                           [SOFTSH_PRIMITIVE_MICROPATCH_UNEXTENDED] = SS_PRIMITIVE_PATCH,
                                           [SOFTSH_PRIMITIVE_MICROQUAD] = SS_PRIMITIVE_QUAD,
                                           [SOFTSH_PRIMITIVE_MICROQUAD_RECTANGLE] = SS_PRIMITIVE_QUAD_RECTANGLE};
+    static const uint32_t reconstructions[] = {
+        [SOFTSH_RECONSTRUCTION_JOINED] = SS_RECONSTRUCTION_JOINED,
+        [SOFTSH_RECONSTRUCTION_FOLDS] = SS_RECONSTRUCTION_FOLDS,
+        [SOFTSH_RECONSTRUCTION_SECOND_DIFFERENCES] = SS_RECONSTRUCTION_SECOND_DIFFERENCES,
+        [SOFTSH_RECONSTRUCTION_BACKS] = SS_RECONSTRUCTION_BACKS,
+    };
     const bool area = s->technique != SOFTSH_TECHNIQUE_BITMASK;
     softshi_specialization c = {{0}};
     c.values[SS_SPEC_PATTERN_SIDE] = area ? 0 : sides[s->pattern];
     c.values[SS_SPEC_JITTERED] = !area && s->pattern == SOFTSH_PATTERN_16X16_JITTERED;
     c.values[SS_SPEC_PRIMITIVE] =
         s->technique == SOFTSH_TECHNIQUE_CONTOUR ? SS_PRIMITIVE_CONTOUR : primitives[s->primitive];
+    c.values[SS_SPEC_RECONSTRUCTION] = reconstructions[s->reconstruction];
     c.values[SS_SPEC_SAMPLED] = s->aggregation == SOFTSH_AGGREGATION_SAMPLED;
     c.values[SS_SPEC_MERGE_MAXIMUM] = s->merge == SOFTSH_MERGE_MAXIMUM;
     c.values[SS_SPEC_AREA] = area || s->filter_passes > 0;

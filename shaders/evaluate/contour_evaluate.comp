@@ -30,6 +30,8 @@ layout(push_constant) uniform ss_push
 #include "ss_strip.glsl"
 #include "ss_dual_grid.glsl"
 #include "ss_walk.glsl"
+#include "ss_folds.glsl"
+#include "ss_backs.glsl"
 
 const uint LIST = ALONE ? SS_LIST_PIXELS : SS_PACKET == 2 ? SS_LIST_SMALL : SS_LIST_LARGE;
 
@@ -84,7 +86,17 @@ void search_strips()
         const uint unknown_rows = ss_fill_strip(packet, ALONE, grid, blocks, in_blocks, samples.lo, samples.hi, x0, y0, count);
         if (!ALONE)
             resolve_strip(grid, x0, y0, unknown_rows);
-        add_contours(grid, x0, y0, diverged ? 0u : ss_contour_rows(count), 0x7fffffffu & (0xffffffffu << skip));
+        const uint columns = 0x7fffffffu & (0xffffffffu << skip);
+        uint full_rows;
+        const uint contour_rows = ss_contour_rows(diverged ? 0 : count, full_rows);
+        add_contours(grid, x0, y0, contour_rows, columns);
+        if (BACKS) {
+            // What an earlier layer loses the next one sees.
+            const uint rows = layer + 1u < ss_layers() ? 0u : full_rows;
+            const uint back_rows = ss_find_backs(grid, ss_load_folds(layer, samples.level), x0, y0, rows, columns);
+            const bool done = ss_add_backs(grid, x0, y0, back_rows, ss_most_back_rounds());
+            diverged = diverged || (!ALONE && !done);
+        }
         y0 += SS_STRIP_ROWS;
         if (y0 > samples.hi.y) {
             y0 = samples.lo.y - 1;
@@ -196,7 +208,7 @@ void main()
     resolved = 0u;
     diverged = false;
     [[unroll]] for (int i = 0; i < N; i++)
-        area[i] = occlusion[i] = 0.0;
+        area[i] = backs[i] = occlusion[i] = 0.0;
     if (SS_WALK)
         search_by_walk();
     else

@@ -54,13 +54,21 @@ ivec2 ss_floor(vec2 x)
 // its cell up to two.
 uint ss_most_samples()
 {
-    return uint((SS_IS_PATCH ? 240.0 : SS_IS_CONTOUR ? 128.0 : 160.0) * inversesqrt(float(ss_layers())));
+    const float of_contours = SS_RECONSTRUCTION == SS_RECONSTRUCTION_BACKS ? 96.0 : 128.0;
+    return uint((SS_IS_PATCH ? 240.0 : SS_IS_CONTOUR ? of_contours : 160.0) * inversesqrt(float(ss_layers())));
+}
+
+// The same with the budget.
+uint ss_most_budgeted()
+{
+    const uint most = ss_most_samples();
+    return frame.quality.x == 0u ? most : min(frame.quality.x, most);
 }
 
 // The least level at which so many texels are at most the budget's samples. No division: drivers may do that lane by lane.
 uint ss_extent_level(int extent)
 {
-    const uint most = ss_most_samples(), budget = frame.quality.x == 0u ? most : min(frame.quality.x, most);
+    const uint budget = ss_most_budgeted();
     const uint steps = uint(extent) - 1u, shift = uint(max(findMSB(steps) - findMSB(budget), 0));
     const uint level = shift + uint(steps >= budget << shift);
     return min(max(level, frame.quality.y), occ.levels.x);

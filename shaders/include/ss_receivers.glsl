@@ -10,6 +10,8 @@ const uint MOST_RESOLVED = 512u;
 
 const int N = SS_PACKET * SS_PACKET;
 const bool ALONE = N == 1;
+// Whether the areas of cells that receivers see from behind are found, too.
+const bool BACKS = SS_RECONSTRUCTION == SS_RECONSTRUCTION_BACKS;
 
 ss_packet packet;
 uint together;      // its receivers
@@ -22,7 +24,7 @@ bool diverged;
 float at_u[N], at_v[N], at_g[N]; // g: biased
 float border[N], gradient_x[N], gradient_y[N], drift[N]; // of what counts as its own surface; border: at uv
 float horizon[N];
-float area[N], occlusion[N];
+float area[N], backs[N], occlusion[N]; // backs: of cells seen from behind
 uint edges;   // found
 uint refined; // those whose level is finer than the budget's
 uint touched; // those whose light edges of the contours come near enough to hide parts of
@@ -88,7 +90,12 @@ void ss_end_layer()
     const float turn = ss_turn(light_map);
     [[unroll]] for (int i = 0; i < N; i++) {
         const float signed_area = turn * area[i];
-        const float a = signed_area > 0.0 ? min(signed_area, 1.0) : 0.0; // not a number is nothing
+        float a = signed_area > 0.0 ? min(signed_area, 1.0) : 0.0; // not a number is nothing
+        if (BACKS) {
+            const float folded = turn * backs[i];
+            a += folded > 0.0 ? min(folded, 1.0) * (1.0 - a) * (1.0 - a) : 0.0;
+            backs[i] = 0.0;
+        }
         occlusion[i] = SS_MERGE_MAXIMUM ? max(occlusion[i], a) : min(occlusion[i] + a, 1.0);
         area[i] = 0.0;
     }

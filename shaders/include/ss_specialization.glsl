@@ -20,7 +20,7 @@ layout(constant_id = SS_SPEC_BLOCK) const int SS_BLOCK = 4;
 const uint SS_BLOCK_ROW = (SS_TILE_X + SS_BLOCK - 1) / SS_BLOCK; // blocks in a row of a tile; the last may stick out of it
 const uint SS_TILE_BLOCKS = SS_BLOCK_ROW * SS_BLOCK_ROW;
 layout(constant_id = SS_SPEC_REFINE) const bool SS_REFINE = false;
-layout(constant_id = SS_SPEC_RECONSTRUCTION) const int SS_RECONSTRUCTION = SS_RECONSTRUCTION_FOLDS;
+layout(constant_id = SS_SPEC_RECONSTRUCTION) const int SS_RECONSTRUCTION = SS_RECONSTRUCTION_JOINED;
 layout(constant_id = SS_SPEC_SPLIT) const bool SS_SPLIT = false;
 layout(constant_id = SS_SPEC_WALK) const bool SS_WALK = false;
 

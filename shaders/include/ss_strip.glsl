@@ -97,14 +97,16 @@ uint ss_fill_strip(ss_packet p, bool one, ss_grid grid, ss_grid blocks, bool in_
     return unknown_rows;
 }
 
-// Rows of cells that the contour runs through, of `count` rows; of 31 columns.
-uint ss_contour_rows(int count)
+// Of `count` rows of cells, of 31 columns: those that the contour runs through, and those with cells all of whose corners occlude.
+uint ss_contour_rows(int count, out uint full_rows)
 {
     uint rows = 0u, below = ss_strip[0];
+    full_rows = 0u;
     for (int j = 1; j <= count; j++) {
         const uint above = ss_strip[j];
         const uint any = below | below >> 1 | above | above >> 1, all = below & below >> 1 & above & above >> 1;
         rows |= (any & ~all & 0x7fffffffu) != 0u ? 1u << (j - 1) : 0u;
+        full_rows |= (all & 0x7fffffffu) != 0u ? 1u << (j - 1) : 0u;
         below = above;
     }
     return rows;

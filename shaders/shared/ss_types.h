@@ -86,8 +86,10 @@ typedef struct ss_ivec4 {
 #define SS_PRIMITIVE_CONTOUR 4
 
 /* Where neighbours that occlude are cut apart. */
-#define SS_RECONSTRUCTION_FOLDS 0
-#define SS_RECONSTRUCTION_SECOND_DIFFERENCES 1
+#define SS_RECONSTRUCTION_JOINED 0
+#define SS_RECONSTRUCTION_FOLDS 1
+#define SS_RECONSTRUCTION_SECOND_DIFFERENCES 2
+#define SS_RECONSTRUCTION_BACKS 3
 
 #define SS_TILE_X 8 /* pixels of a tile */
 #define SS_TILE_Y 8

@@ -259,7 +259,7 @@ static void view_errors(void **state)
     BAD(VIEW, in.settings.budget = 4097, INVALID, "softsh_settings::budget");
     BAD(VIEW, in.settings.min_level = 14, INVALID, "softsh_settings::min_level");
     BAD(VIEW, in.settings.packet = (softsh_packet)6, INVALID, "softsh_settings::packet");
-    BAD(VIEW, in.settings.reconstruction = (softsh_reconstruction)4, INVALID, "softsh_settings::reconstruction");
+    BAD(VIEW, in.settings.reconstruction = (softsh_reconstruction)5, INVALID, "softsh_settings::reconstruction");
     BAD(VIEW, in.settings.technique = SOFTSH_TECHNIQUE_CONTOUR;
         in.settings.reconstruction = SOFTSH_RECONSTRUCTION_FOLDS;
         in.settings.aggregation = SOFTSH_AGGREGATION_NEAREST, INVALID, "softsh_settings::reconstruction");
@@ -504,16 +504,21 @@ static void mismatches(void **state)
     valid.view.normals = 0;
     valid.settings.technique = SOFTSH_TECHNIQUE_BITMASK;
     valid.settings.outline = 1;
+    valid.occluders.no_folds = 1;
+    softsh_occluders *const bare = scene_occluders(with.context, &valid);
+    assert_int_equal(softsh_cmd_build_occluders(with.cmd, bare, &valid.build), SOFTSH_SUCCESS);
     with.view = scene_view(with.context, &valid);
-    BAD(VISIBILITY, (void)in, INVALID, "outlines");
+    BAD(VISIBILITY, in.visibility.occluders = bare, INVALID, "no_folds");
     softsh_view_destroy(with.view);
     valid.settings.outline = 0;
     valid.settings.technique = SOFTSH_TECHNIQUE_CONTOUR;
-    valid.settings.reconstruction = SOFTSH_RECONSTRUCTION_FOLDS;
     valid.settings.aggregation = SOFTSH_AGGREGATION_SAMPLED;
-    with.view = scene_view(with.context, &valid);
-    BAD(VISIBILITY, (void)in, INVALID, "outlines");
-    softsh_view_destroy(with.view);
+    for (int how = SOFTSH_RECONSTRUCTION_FOLDS; how <= SOFTSH_RECONSTRUCTION_BACKS; how++) {
+        valid.settings.reconstruction = (softsh_reconstruction)how;
+        with.view = scene_view(with.context, &valid);
+        BAD(VISIBILITY, in.visibility.occluders = bare, INVALID, "no_folds");
+        softsh_view_destroy(with.view);
+    }
     valid.settings.reconstruction = SOFTSH_RECONSTRUCTION_DEFAULT;
     valid.settings.search = SOFTSH_SEARCH_WALK;
     with.view = scene_view(with.context, &valid);
@@ -538,6 +543,7 @@ static void mismatches(void **state)
     assert_true(gpu_submit(&s->g, with.cmd));
     with.cmd = gpu_begin(&s->g);
     assert_non_null(with.cmd);
+    softsh_occluders_destroy(bare);
     softsh_occluders_destroy(turned);
     softsh_occluders_destroy(foreign);
     softsh_context_destroy(other);

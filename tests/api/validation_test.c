@@ -49,18 +49,19 @@ static void settings_are_silent(void **state)
             in.maps[0].rect = in.maps[1].rect = (VkRect2D){{3, 1}, {37, 29}};
         if (i == 9)
             in.view.settings = NULL;
-        /* Outlines, dual grids, and views that combine sub-lights. */
-        in.occluders.outlines = i % 4 == 1;
+        /* Folds, dual grids, and views that combine sub-lights. */
+        const bool folds = i % 4 == 1;
+        in.occluders.no_folds = !folds && in.view.settings;
         in.view.sublights = i % 3 == 2;
-        if (in.occluders.outlines && in.settings.technique != SOFTSH_TECHNIQUE_CONTOUR) {
+        if (folds && in.settings.technique != SOFTSH_TECHNIQUE_CONTOUR) {
             in.settings.outline = 1;
             in.settings.primitive = SOFTSH_PRIMITIVE_DEFAULT;
             in.settings.aggregation = SOFTSH_AGGREGATION_SAMPLED;
             in.settings.pattern = i % 3;
             in.settings.filter_passes = 0;
         }
-        if (in.occluders.outlines && in.settings.technique == SOFTSH_TECHNIQUE_CONTOUR) {
-            in.settings.reconstruction = 2 + i / 4 % 2;
+        if (folds && in.settings.technique == SOFTSH_TECHNIQUE_CONTOUR) {
+            in.settings.reconstruction = 2 + i / 4 % 3;
             in.settings.aggregation = SOFTSH_AGGREGATION_SAMPLED;
         }
         in.occluders.dual_grids = i % 3 == 2;

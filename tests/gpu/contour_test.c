@@ -76,7 +76,6 @@ static void board_create(const board *b, scene *s)
     s->lamp.light.half_v[0] = -b->half_v * sin(b->turn);
     s->lamp.light.half_v[1] = b->half_v * cos(b->turn);
     s->lamp.place = (placement){.width = b->map_width, .height = b->map_height};
-    s->lamp.outlines = b->settings.reconstruction > SOFTSH_RECONSTRUCTION_JOINED;
     s->lamp.layer_count = 1;
     s->eye.place = (placement){.width = b->side, .height = b->side};
     reference_look_at(nowhere, floor_at, up, s->lamp.view);
@@ -295,7 +294,6 @@ static void surfaces_apart(void **state)
     s.lamp.light = (softsh_light){.struct_size = sizeof s.lamp.light, .half_u = {1, 0, 0}, .half_v = {0, 1, 0}};
     s.lamp.place = (placement){.width = MAP, .height = MAP};
     s.lamp.layer_count = 1;
-    s.lamp.outlines = true;
     s.eye.place = (placement){.width = SIDE, .height = SIDE};
     reference_look_at(nowhere, floor_at, up, s.lamp.view);
     reference_perspective((const double[4]){-0.5, 0.5, -0.5, 0.5}, 1.0, 30.0, REFERENCE_DEPTH_NORMAL,

@@ -147,7 +147,7 @@ static void smaller_maps(void **state)
                 s.info.max_extent = largest[large];
                 s.info.accel = accels[accel];
                 s.info.ysm_join = 16;
-                s.info.outlines = map % 2;
+                s.info.no_folds = map % 2;
                 check(&s);
                 subject_destroy(&s);
             }

@@ -182,7 +182,7 @@ void lamp_create(const lamp_info *info, lamp *out)
         .max_layers = info->layer_count,
         .accel = info->accel,
         .ysm_join = info->ysm_join,
-        .outlines = info->outlines,
+        .no_folds = info->no_folds,
         .dual_grids = info->dual_grids,
         .name = "test",
     };

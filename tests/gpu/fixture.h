@@ -57,7 +57,7 @@ typedef struct lamp_info {
     bool reverse_order;    /* hand the last layer over first */
     VkImageLayout layout;  /* VK_IMAGE_LAYOUT_UNDEFINED: SHADER_READ_ONLY_OPTIMAL */
     VkExtent2D max_extent; /* zero: the map's */
-    bool outlines, dual_grids;
+    bool no_folds, dual_grids;
     uint32_t grid[2], cell[2]; /* of a sub-light; zero: layers of all of the light */
     softsh_accel accel;
     uint32_t ysm_join;

@@ -171,6 +171,7 @@ static void visibilities_are_numbers(void **state)
         {.technique = SOFTSH_TECHNIQUE_BITMASK, .outline = 1},
         {.technique = SOFTSH_TECHNIQUE_CONTOUR},
         {.technique = SOFTSH_TECHNIQUE_CONTOUR, .reconstruction = SOFTSH_RECONSTRUCTION_FOLDS, .budget = 9},
+        {.technique = SOFTSH_TECHNIQUE_CONTOUR, .reconstruction = SOFTSH_RECONSTRUCTION_BACKS},
         {.technique = SOFTSH_TECHNIQUE_CONTOUR,
          .aggregation = SOFTSH_AGGREGATION_NEAREST,
          .merge = SOFTSH_MERGE_MAXIMUM,
@@ -197,7 +198,6 @@ static void visibilities_are_numbers(void **state)
                 eye e;
                 random_attack(&seed, width, height, &a);
                 a.eye.normals = normals ? a.normals : NULL;
-                a.lamp.outlines = settings[k].outline != 0 || settings[k].reconstruction > SOFTSH_RECONSTRUCTION_JOINED;
                 a.lamp.dual_grids = settings[k].search == SOFTSH_SEARCH_WALK;
                 lamp_create(&a.lamp, &l);
                 eye_create(&a.eye, &e);

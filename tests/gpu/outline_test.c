@@ -29,7 +29,6 @@ static void bits_say_what_folds(void **state)
             lamp l;
             readback r;
             scene_create(&from, &s);
-            s.lamp.outlines = true;
             lamp_create(&s.lamp, &l);
             readback_create(&l, &r);
             lamp_reference(&s.lamp, &map);
@@ -101,7 +100,6 @@ static void outlines_are_microquads(void **state)
                 eye e;
                 scene_create(&from, &s);
                 s.eye.normals = NULL;
-                s.lamp.outlines = true;
                 lamp_create(&s.lamp, &l);
                 eye_create(&s.eye, &e);
                 sight_run(&each, &l, &e, NULL, quads, &all);

@@ -47,7 +47,7 @@ void readback_create(const lamp *l, readback *out)
     out->width = header->size.x;
     out->height = header->size.y;
     out->layers = header->size.z;
-    softshi_layout_occluders((VkExtent2D){out->width, out->height}, out->layers, o->join_texels, o->outlines,
+    softshi_layout_occluders((VkExtent2D){out->width, out->height}, out->layers, o->join_texels, o->folds,
                              o->dual_grids, &layout);
     out->top = layout.top;
     out->join = layout.join;

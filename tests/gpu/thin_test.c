@@ -83,7 +83,7 @@ static void bits_say_what_samples_miss(void **state)
     (void)state;
     for (uint32_t k = 0; k < 4 * sizeof sizes / sizeof sizes[0]; k++) {
         const uint32_t width = sizes[k / 4][0], height = sizes[k / 4][1];
-        lamp_info info = {.layer_count = 1 + k % 2, .place = {.width = width, .height = height}, .outlines = k % 4 > 1};
+        lamp_info info = {.layer_count = 1 + k % 2, .place = {.width = width, .height = height}, .no_folds = k % 4 < 2};
         float *depth[2];
         /* In the light's plane, and behind it. */
         info.light =

@@ -11,6 +11,7 @@
 
 #include "fixture.h"
 #include "readback.h"
+#include "reference_backs.h"
 #include "reference_outline.h"
 #include "reference_separate.h"
 #include "reference_visibility.h"
@@ -59,7 +60,6 @@ typedef struct differences {
 static void stage_create(stage *s)
 {
     scene_create(&s->info, &s->scene);
-    s->scene.lamp.outlines = true;
     lamp_create(&s->scene.lamp, &s->lamp);
     lamp_reference(&s->scene.lamp, &s->map);
     for (uint32_t i = 0; i < s->scene.lamp.layer_count; i++) {
@@ -135,6 +135,10 @@ static void reference_image(const stage *s, const softsh_settings *settings, boo
     for (uint32_t i = 0; i < MAX_PIXELS; i++) {
         const reference_receiver *const r = &s->receivers[normals][i];
         reference_occlusion o;
+        if (contours && settings->reconstruction == SOFTSH_RECONSTRUCTION_BACKS) {
+            assert_true(reference_backs_visibility(grids, layer_count, &s->map, &wanted, r, &visibility[i]));
+            continue;
+        }
         if (contours && settings->reconstruction > SOFTSH_RECONSTRUCTION_JOINED) {
             visibility[i] =
                 reference_separate_visibility(grids, layer_count, &s->map, &wanted, r, settings->reconstruction);
@@ -306,6 +310,27 @@ static void separate_contours_are_the_references(void **state)
     assert_false(failed);
 }
 
+/* With what surfaces hide where their backs are seen, of the last layer. */
+static void backs_are_the_references(void **state)
+{
+    uint32_t next = 0;
+    differences d = {0};
+    (void)state;
+    for (uint32_t view = 0; view < 4; view++) {
+        const softsh_settings settings = {
+            .technique = SOFTSH_TECHNIQUE_CONTOUR,
+            .pattern = SOFTSH_PATTERN_8X8,
+            .aggregation = SOFTSH_AGGREGATION_SAMPLED,
+            .merge = view & 1 ? SOFTSH_MERGE_MAXIMUM : SOFTSH_MERGE_UNION,
+            .reconstruction = SOFTSH_RECONSTRUCTION_BACKS,
+            .no_hierarchy = 1,
+        };
+        check_view(settings, view & 2, 0, SCENES, &next, &d);
+    }
+    print_heading();
+    assert_true(within_limits("contour", "backs", "", &d));
+}
+
 /* Outlines are what all microquads together are, in bits; areas are those of the outline. */
 static void outlines_are_the_references(void **state)
 {
@@ -378,9 +403,10 @@ static int teardown(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bitmasks_are_the_references),          cmocka_unit_test(areas_are_the_references),
-        cmocka_unit_test(contours_are_the_references),          cmocka_unit_test(outlines_are_the_references),
-        cmocka_unit_test(separate_contours_are_the_references), cmocka_unit_test(hard_shadows_are_the_references),
+        cmocka_unit_test(bitmasks_are_the_references),     cmocka_unit_test(areas_are_the_references),
+        cmocka_unit_test(contours_are_the_references),     cmocka_unit_test(outlines_are_the_references),
+        cmocka_unit_test(backs_are_the_references),        cmocka_unit_test(separate_contours_are_the_references),
+        cmocka_unit_test(hard_shadows_are_the_references),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

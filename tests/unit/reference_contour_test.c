@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "contour_case.h"
+#include "reference_backs.h"
 #include "reference_contour.h"
 #include "reference_hierarchy.h"
 #include "reference_separate.h"
@@ -403,13 +404,67 @@ static void smooth_surfaces_are_not_cut(void **unused)
     assert_true(smooth > 20 && folded > 20);
 }
 
+/* Of cells of planes, steep ones too: exactly those turn over on the light whose plane passes below the receiver. */
+static void images_of_backs_are_turned_over(void **unused)
+{
+    (void)unused;
+    static float g[texels];
+    uint64_t state = 77;
+    uint32_t backs = 0, fronts = 0;
+    for (int round = 0; round < 200; ++round) {
+        const reference_map map = build_map((setup_kind)(round % setup_count), 0.6, 0);
+        reference_settings settings = random_settings(&state, SOFTSH_PRIMITIVE_MICROPATCH);
+        reference_dual_grid grid;
+        settings.aggregation = SOFTSH_AGGREGATION_SAMPLED;
+        settings.level = 0;
+        const double turn = map.a[0][0] * map.a[1][1] - map.a[0][1] * map.a[1][0] < 0.0 ? -1.0 : 1.0;
+        const double range = fan_depth(&map, 1.0) - fan_depth(&map, 0.0);
+        const double along_u = range * reference_random_range(&state, -0.4, 0.4),
+                     along_v = range * reference_random_range(&state, -0.4, 0.4);
+        for (int i = 0; i < texels; ++i)
+            g[i] =
+                (float)(fan_depth(&map, 0.5) + along_u * (i % width - width / 2) + along_v * (i / width - height / 2));
+        assert_true(reference_dual_grid_create(&grid, &map, &settings, g));
+        for (int k = 0; k < 20; ++k) {
+            const reference_receiver receiver = random_receiver(&state, &map);
+            const double raised[3] = {receiver.uvg[0], receiver.uvg[1], reference_raised_g(&map, &settings, &receiver)};
+            for (int32_t y = 0; y + 1 < (int32_t)grid.rows; ++y)
+                for (int32_t x = 0; x + 1 < (int32_t)grid.columns; ++x) {
+                    static const int32_t corner_x[4] = {0, 1, 1, 0}, corner_y[4] = {0, 0, 1, 1};
+                    double q[4][2], area = 0.0, size = 0.0;
+                    bool before = true;
+                    for (int i = 0; i < 4 && before; ++i) {
+                        const double *const place = reference_dual_grid_place(&grid, x + corner_x[i], y + corner_y[i]);
+                        before = place[2] > raised[2];
+                        if (before)
+                            reference_map_backproject(&map, raised, place, q[i]);
+                    }
+                    for (int i = 0; i < 4 && before; ++i) {
+                        const double *const a = q[i], *const b = q[(i + 1) % 4];
+                        area += 0.5 * turn * (a[0] * b[1] - a[1] * b[0]);
+                        size += fabs(a[0]) + fabs(a[1]);
+                    }
+                    if (!before || fabs(area) < 1e-6 * size * size)
+                        continue;
+                    const bool back = reference_seen_from_behind(&grid, &map, &settings, &receiver, x, y);
+                    backs += back;
+                    fronts += !back;
+                    assert_true(back == (area < 0.0));
+                }
+        }
+        reference_dual_grid_destroy(&grid);
+    }
+    assert_true(backs > 1000 && fronts > 1000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nodes_bound_their_samples),     cmocka_unit_test(block_statuses_are_never_wrong),
-        cmocka_unit_test(walks_visit_every_cell_once),   cmocka_unit_test(cells_are_cut_the_same_way_all_around),
-        cmocka_unit_test(lone_texels_are_diamonds),      cmocka_unit_test(every_extraction_gives_one_contour),
-        cmocka_unit_test(packets_give_what_pixels_give), cmocka_unit_test(smooth_surfaces_are_not_cut),
+        cmocka_unit_test(nodes_bound_their_samples),       cmocka_unit_test(block_statuses_are_never_wrong),
+        cmocka_unit_test(walks_visit_every_cell_once),     cmocka_unit_test(cells_are_cut_the_same_way_all_around),
+        cmocka_unit_test(lone_texels_are_diamonds),        cmocka_unit_test(every_extraction_gives_one_contour),
+        cmocka_unit_test(packets_give_what_pixels_give),   cmocka_unit_test(smooth_surfaces_are_not_cut),
+        cmocka_unit_test(images_of_backs_are_turned_over),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
