@@ -228,7 +228,7 @@ typedef struct softsh_stats {
     uint64_t packets;         /* packets of pixels that evaluation began with; of contours */
     uint64_t incoherent;      /* of these, with pixels that did not belong together and were evaluated apart */
     uint64_t diverged;        /* of these, not of one contour: all pixels were evaluated apart */
-    uint64_t edges;           /* edges of contours or outlines found, by packets and pixels */
+    uint64_t edges;           /* edges of contours or outlines, or sides of backs, by packets and pixels */
     uint64_t visited;         /* looked at for these, likewise: samples and blocks of them; by SOFTSH_SEARCH_WALK, nodes
                                  of levels above 0, and cells between four samples */
     uint64_t refined;         /* active pixels evaluated finer than the budget, for something thin in their kernels */

@@ -7,12 +7,6 @@
 // Of the strip's cells, as bits: those that every receiver sees from behind; those that some may.
 uint ss_back_every[SS_STRIP_ROWS], ss_back_some[SS_STRIP_ROWS];
 
-// Four times the height of a cell's mean plane: of its corners' sum and slopes, and the place in steps from its middle.
-vec4 ss_plane_at(vec4 sum, vec4 dx, vec4 dy, vec4 x, float y)
-{
-    return sum + 2.0 * (dx * x + dy * y);
-}
-
 // Fills those arrays in, for the rows it returns. Looks at `full_rows`, at cells in `columns` that fold and whose corners all occlude.
 uint ss_find_backs(ss_grid grid, ss_folds folds, int x0, int y0, uint full_rows, uint columns)
 {
@@ -40,8 +34,9 @@ uint ss_find_backs(ss_grid grid, ss_folds folds, int x0, int y0, uint full_rows,
         const vec4 high_right = vec4(high.yzw, ss_depth_at(4u * (upper + next)));
         const vec4 dx = low_right - low + (high_right - high), dy = high - low + (high_right - low_right);
         const vec4 sum = low + low_right + (high + high_right);
-        const vec4 x = at.x - (float(x0 + k) + vec4(0.5, 1.5, 2.5, 3.5));
-        const vec4 height = ss_plane_at(sum, dx, dy, x, at.y - (float(y0 + row) + 0.5));
+        const vec4 x = at.x - (float(x0 + k) + vec4(0.5, 1.5, 2.5, 3.5)); // in steps from the cells' middles
+        const float y = at.y - (float(y0 + row) + 0.5);
+        const vec4 height = sum + 2.0 * (dx * x + dy * y); // of the mean plane there, four times
         const vec4 room = 2.0 * (abs(dx) * reach.x + abs(dy) * reach.y);
         const uint of_quad = any ? cells >> k & 15u : 0u;
         const uint may = ss_bits(lessThanEqual(height - room, vec4(4.0 * packet.g_hi))) & of_quad;
@@ -66,7 +61,7 @@ uint ss_most_back_rounds()
 // from behind. Sides between cells that all receivers see so need not be looked at. Returns whether it is done within so many rounds.
 bool ss_add_backs(ss_grid grid, int x0, int y0, uint back_rows, uint most_rounds)
 {
-    const float spacing = float(1u << grid.level), per_step = 1.0 / spacing;
+    const float per_step = 1.0 / float(1u << grid.level);
     const ivec2 last_texel = ivec2(occ.size.xy) - 1;
     uint rows = back_rows, todo = 0u, sides = 0u, seen = 0u, every = 0u, below = 0u, above = 0u, rounds = 0u;
     int row = 0;

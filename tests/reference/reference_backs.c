@@ -51,7 +51,6 @@ bool reference_backs_visibility(const reference_dual_grid *grids, uint32_t layer
                                 const reference_settings *settings, const reference_receiver *receiver,
                                 double *visibility)
 {
-    reference_contour contour = {0};
     reference_settings flat = *settings;
     double occlusion = 0.0;
     bool success = true;
@@ -60,19 +59,14 @@ bool reference_backs_visibility(const reference_dual_grid *grids, uint32_t layer
         return true;
     flat.primitive = SOFTSH_PRIMITIVE_MICROPATCH; /* the band around the receiver's plane */
     for (uint32_t i = 0; i < layer_count && success; ++i) {
-        const reference_rect all = {0, 0, (int32_t)grids[i].columns - 1, (int32_t)grids[i].rows - 1};
-        reference_occlusion layer;
-        success =
-            reference_contour_extract(&grids[i], map, &flat, receiver, 1, all, REFERENCE_EXTRACT_WALK, NULL, &contour);
-        reference_contour_occlusion(&grids[i], map, &flat, receiver, &contour, &layer);
-        double area = fmin(fmax(layer.area, 0.0), 1.0);
+        double area;
+        success = reference_contour_area(&grids[i], map, &flat, receiver, &area);
         if (i + 1 == layer_count) {
             const double back = reference_backs_area(&grids[i], map, &flat, receiver);
             area += fmin(fmax(back, 0.0), 1.0) * (1.0 - area) * (1.0 - area);
         }
         occlusion = settings->merge == SOFTSH_MERGE_MAXIMUM ? fmax(occlusion, area) : fmin(occlusion + area, 1.0);
     }
-    reference_contour_free(&contour);
     *visibility = reference_visible(receiver, occlusion);
     return success;
 }

@@ -197,11 +197,24 @@ bool reference_contour_packet(const reference_dual_grid *grid, const reference_m
     return success;
 }
 
+bool reference_contour_area(const reference_dual_grid *grid, const reference_map *map,
+                            const reference_settings *settings, const reference_receiver *receiver, double *area)
+{
+    const reference_rect all = {0, 0, (int32_t)grid->columns - 1, (int32_t)grid->rows - 1};
+    reference_contour contour = {0};
+    reference_occlusion occlusion;
+    const bool success =
+        reference_contour_extract(grid, map, settings, receiver, 1, all, REFERENCE_EXTRACT_WALK, NULL, &contour);
+    reference_contour_occlusion(grid, map, settings, receiver, &contour, &occlusion);
+    reference_contour_free(&contour);
+    *area = fmin(fmax(occlusion.area, 0.0), 1.0);
+    return success;
+}
+
 bool reference_contour_visibility(const reference_dual_grid *grids, uint32_t layer_count, const reference_map *map,
                                   const reference_settings *settings, const reference_receiver *receiver,
                                   double *visibility)
 {
-    reference_contour contour = {0};
     reference_settings flat = *settings;
     double occlusion = 0.0;
     bool success = true;
@@ -210,15 +223,10 @@ bool reference_contour_visibility(const reference_dual_grid *grids, uint32_t lay
         return true;
     flat.primitive = SOFTSH_PRIMITIVE_MICROPATCH; /* the band around the receiver's plane */
     for (uint32_t i = 0; i < layer_count && success; ++i) {
-        const reference_rect all = {0, 0, (int32_t)grids[i].columns - 1, (int32_t)grids[i].rows - 1};
-        reference_occlusion layer;
-        success =
-            reference_contour_extract(&grids[i], map, &flat, receiver, 1, all, REFERENCE_EXTRACT_WALK, NULL, &contour);
-        reference_contour_occlusion(&grids[i], map, &flat, receiver, &contour, &layer);
-        const double area = fmin(fmax(layer.area, 0.0), 1.0);
+        double area;
+        success = reference_contour_area(&grids[i], map, &flat, receiver, &area);
         occlusion = settings->merge == SOFTSH_MERGE_MAXIMUM ? fmax(occlusion, area) : fmin(occlusion + area, 1.0);
     }
-    reference_contour_free(&contour);
     *visibility = reference_visible(receiver, occlusion);
     return success;
 }

@@ -54,6 +54,10 @@ bool reference_contour_packet(const reference_dual_grid *grid, const reference_m
                               const reference_rect *ranges, uint32_t count, reference_walk *walk, bool *diverged,
                               reference_occlusion *out);
 
+/* The area of the whole map's contours in the light, 0 to 1. False for want of memory. */
+bool reference_contour_area(const reference_dual_grid *grid, const reference_map *map,
+                            const reference_settings *settings, const reference_receiver *receiver, double *area);
+
 /* What SOFTSH_TECHNIQUE_CONTOUR makes of all layers, one grid each: visibility by the whole maps' contours. The light
  * has an extent; settings->primitive is not looked at. False for want of memory. */
 bool reference_contour_visibility(const reference_dual_grid *grids, uint32_t layer_count, const reference_map *map,
