@@ -1,5 +1,6 @@
-// Costs of packets on this device: time of evaluation against what was counted, equation 6 of Yang et al. 2009. What
-// this prints for a class of devices is what lib/techniques/settings.c has.
+// Costs of packets on this device: time of evaluation against what was counted, equation 6 of Yang et al. 2009; and
+// what the equation does to the time with one cost of projections or another. What this prints for a class of devices
+// is what lib/techniques/settings.c has.
 #include <array>
 #include <cstdio>
 
@@ -70,6 +71,12 @@ std::array<double, 3> fit(const std::vector<Sample> &samples)
     return best;
 }
 
+// Packets of all pixels, or of every second one, when equation 6 takes a projection to cost some share of an edge.
+std::string with_costs(const std::string &sparse, const std::string &share)
+{
+    return "contour budget=32 packet=4x4 sparse=" + sparse + " cost=0,1," + share;
+}
+
 } // namespace
 
 void run_tune(Bench &bench)
@@ -86,10 +93,14 @@ void run_tune(Bench &bench)
     std::vector<Technique> techniques;
     for (const std::string &packet : packets)
         techniques.push_back(technique_of("contour budget=32 packet=" + packet));
+    const std::vector<std::string> shares = {"0.5", "0.2", "0"};
+    for (const std::string sparse : {"off", "on"})
+        for (const std::string &share : shares)
+            techniques.push_back(technique_of(with_costs(sparse, share)));
     const std::vector<CaseSource> sources = bench.cases({"balls", "fence"});
     bench.begin_suite("tune", sources.size() * lights.size());
     std::vector<Sample> samples;
-    std::map<std::string, double> over_single;
+    std::map<std::string, double> over_single; // by packet, or by what has costs of its own
     int measured = 0;
     for (const CaseSource &source : sources)
         for (const double light : lights) {
@@ -103,13 +114,15 @@ void run_tune(Bench &bench)
             double single = 0;
             for (const Row &row : bench.measure(*bench_case, techniques, effort, variant)) {
                 const double ms = stage_ms(row, "evaluate").value_or(0.0);
-                const std::string &packet = row.technique.settings.at("packet");
-                if (packet == "1x1") {
+                const auto &settings = row.technique.settings;
+                if (settings.at("packet") == "1x1") {
                     single = ms;
                     measured++;
                 }
-                over_single[packet] += ms / single;
-                if (row.stats && row.stats->edges)
+                const bool costs = settings.count("cost") > 0;
+                over_single[costs ? settings.at("sparse") + " " + settings.at("cost") : settings.at("packet")] +=
+                    ms / single;
+                if (!costs && row.stats && row.stats->edges)
                     samples.push_back({{static_cast<double>(row.stats->visited), static_cast<double>(row.stats->edges),
                                         static_cast<double>(row.stats->primitives)},
                                        1e6 * ms});
@@ -124,4 +137,9 @@ void run_tune(Bench &bench)
     for (const std::string &packet : packets)
         bench.report().figures.push_back({"time_of_packets_over_single_pixels", "all", over_single[packet] / measured,
                                           "packet=" + packet + ", mean over cases and lights"});
+    for (const std::string sparse : {"off", "on"})
+        for (const std::string &share : shares)
+            bench.report().figures.push_back({"time_by_cost_of_projections", "all",
+                                              over_single[sparse + " 0,1," + share] / measured,
+                                              share + " edges, sparse=" + sparse});
 }

@@ -164,6 +164,12 @@ def packets(device):
     fitted = (f"Fitted to counts: {costs['packet_cost_node']} ns for a sample or block looked at, "
               f"{costs['packet_cost_edge']} for an edge found, {costs['packet_cost_projection']} for one projected, of the whole "
               "device." if costs else "")
+    by_cost = [figure for figure in device.figures if figure["name"] == "time_by_cost_of_projections"]
+    for sparse, what in (("off", "4 x 4 pixels"), ("on", "every second of them")):
+        times = [f"{fixed(figure['value'], 2)} at {figure['about'].split(',')[0]}" for figure in by_cost
+                 if figure["about"].endswith(f"sparse={sparse}")]
+        if times:
+            fitted += f" Packets of {what}, by what equation 6 takes a projection to cost: {', '.join(times)}."
     return table(["packet", "time over single pixels'"], lines) + ("\n\n" + fitted if lines and fitted else "")
 
 

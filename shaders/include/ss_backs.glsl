@@ -57,63 +57,72 @@ uint ss_most_back_rounds()
     return 24000u / (ss_layers() * strips);
 }
 
-// Adds up the areas of the strip's cells in `back_rows`, one side after the other: clockwise, which is the way round of what is seen
-// from behind. Sides between cells that all receivers see so need not be looked at. Returns whether it is done within so many rounds.
+// `sides` of a cell between places lo and hi, to one receiver's area. The depths of the corners go counter-clockwise from the lower
+// left, the sides clockwise: the way round of what is seen from behind.
+void ss_add_back_cell(int i, vec2 lo, vec2 hi, vec4 g, uint sides)
+{
+    const vec2 p[4] = vec2[4](ss_project(i, vec3(lo, g.x)), ss_project(i, vec3(hi.x, lo.y, g.y)), ss_project(i, vec3(hi, g.z)),
+                              ss_project(i, vec3(lo.x, hi.y, g.w)));
+    float sum = 0.0;
+    bool touches = false;
+    [[unroll]] for (int j = 0; j < 4; j++) {
+        const bool counts = (sides >> j & 1u) != 0u;
+        const vec2 from = p[j + 1 & 3], to = p[j];
+        const float a = ss_edge_area(from, to);
+        sum += counts ? a : 0.0;
+        touches = touches || (counts && ss_edge_touches(from, to));
+    }
+    backs[i] += sum;
+    if (SS_SPARSE)
+        touched |= uint(touches) << i;
+}
+
+// Adds up the areas of the strip's cells in `back_rows`. Sides between cells that all receivers see from behind need not be looked at.
+// Returns whether it is done within so many rounds.
 bool ss_add_backs(ss_grid grid, int x0, int y0, uint back_rows, uint most_rounds)
 {
     const float per_step = 1.0 / float(1u << grid.level);
     const ivec2 last_texel = ivec2(occ.size.xy) - 1;
-    uint rows = back_rows, todo = 0u, sides = 0u, seen = 0u, every = 0u, below = 0u, above = 0u, rounds = 0u;
+    uint rows = back_rows, todo = 0u, every = 0u, below = 0u, above = 0u, rounds = 0u;
     int row = 0;
-    vec2 lo = vec2(0.0), hi = vec2(0.0); // places of the cell's corners
-    vec4 g = vec4(0.0);                  // their depths, counter-clockwise from the lower left
-    while ((rows | todo | sides) != 0u && rounds < most_rounds) {
-        if (sides == 0u) {
-            if (todo == 0u) {
-                row = findLSB(rows);
-                rows &= rows - 1u;
-                every = ss_back_every[row];
-                below = (back_rows << 1 >> row & 1u) != 0u ? ss_back_every[row - 1] : 0u;
-                above = (back_rows >> row >> 1 & 1u) != 0u ? ss_back_every[row + 1] : 0u;
-                todo = ss_back_some[row] | (every & ~(below & above & every << 1 & every >> 1));
-            }
-            const int k = max(findLSB(todo), 0), x = max(x0 + k, 0), y = y0 + row;
-            const bool any = todo != 0u, of_all = (every >> k & 1u) != 0u;
-            todo &= todo - 1u;
-            const uint at = grid.depths + uint(y) * grid.row + uint(x);
-            g = vec4(ss_depth_at(at), ss_depth_at(at + 1u), ss_depth_at(at + grid.row + 1u), ss_depth_at(at + grid.row));
-            lo = vec2(ss_sample_axis(x, grid.level, last_texel.x), ss_sample_axis(y, grid.level, last_texel.y));
-            hi = vec2(ss_sample_axis(x + 1, grid.level, last_texel.x), ss_sample_axis(y + 1, grid.level, last_texel.y));
-            seen = together;
-            if (!ALONE) {
-                const float sum = g.x + g.y + (g.w + g.z), dx = g.y - g.x + (g.z - g.w), dy = g.w - g.x + (g.z - g.y);
-                uint by = 0u;
-                [[unroll]] for (int i = 0; i < N; i++) {
-                    const vec2 away = (vec2(at_u[i], at_v[i]) - lo) * per_step - 0.5;
-                    by |= uint(sum + 2.0 * (dx * away.x + dy * away.y) <= 4.0 * at_g[i]) << i;
-                }
-                seen &= of_all ? together : by;
-            }
-            const uint inner =
-                (below >> k & 1u) | (every >> 1 >> k & 1u) << 1 | (above >> k & 1u) << 2 | (every << 1 >> k & 1u) << 3;
-            sides = any && seen != 0u ? of_all ? ~inner & 15u : 15u : 0u;
+    while ((rows | todo) != 0u && rounds < most_rounds) {
+        if (todo == 0u) {
+            row = findLSB(rows);
+            rows &= rows - 1u;
+            every = ss_back_every[row];
+            below = (back_rows << 1 >> row & 1u) != 0u ? ss_back_every[row - 1] : 0u;
+            above = (back_rows >> row >> 1 & 1u) != 0u ? ss_back_every[row + 1] : 0u;
+            todo = ss_back_some[row] | (every & ~(below & above & every << 1 & every >> 1));
         }
-        const int j = findLSB(sides);
-        const vec3 to = j == 0 ? vec3(lo, g.x) : j == 1 ? vec3(hi.x, lo.y, g.y) : j == 2 ? vec3(hi, g.z) : vec3(lo.x, hi.y, g.w);
-        const vec3 from = j == 0 ? vec3(hi.x, lo.y, g.y) : j == 1 ? vec3(hi, g.z) : j == 2 ? vec3(lo.x, hi.y, g.w) : vec3(lo, g.x);
+        const bool any = todo != 0u;
+        const int k = max(findLSB(todo), 0), x = max(x0 + k, 0), y = y0 + row;
+        todo &= todo - 1u;
+        const uint at = grid.depths + uint(y) * grid.row + uint(x);
+        const vec2 lo = vec2(ss_sample_axis(x, grid.level, last_texel.x), ss_sample_axis(y, grid.level, last_texel.y));
+        const vec2 hi = vec2(ss_sample_axis(x + 1, grid.level, last_texel.x), ss_sample_axis(y + 1, grid.level, last_texel.y));
+        // Of the corners, counter-clockwise from the lower left; four times the mean plane in the middle, and its slopes.
+        const vec4 g = vec4(ss_depth_at(at), ss_depth_at(at + 1u), ss_depth_at(at + grid.row + 1u), ss_depth_at(at + grid.row));
+        const float sum = g.x + g.y + (g.w + g.z), dx = g.y - g.x + (g.z - g.w), dy = g.w - g.x + (g.z - g.y);
+        const bool of_all = (every >> k & 1u) != 0u;
+        const uint inner = (below >> k & 1u) | (every >> 1 >> k & 1u) << 1 | (above >> k & 1u) << 2 | (every << 1 >> k & 1u) << 3;
+        const uint sides = of_all ? ~inner & 15u : 15u;
+        bool seen = any && ALONE;
+        if (ALONE) {
+            ss_add_back_cell(0, lo, hi, g, any ? sides : 0u);
+        } else {
+            for (uint left = any ? together : 0u; left != 0u; left &= left - 1u) {
+                const int i = findLSB(left);
+                const vec2 away = (vec2(at_u[i], at_v[i]) - lo) * per_step - 0.5;
+                const bool sees = of_all || sum + 2.0 * (dx * away.x + dy * away.y) <= 4.0 * at_g[i];
+                ss_add_back_cell(i, lo, hi, g, sees ? sides : 0u);
+                seen = seen || sees;
+                rounds++;
+            }
+        }
+        edges += seen ? uint(bitCount(sides)) : 0u;
         rounds++;
-        for (uint left = sides != 0u ? seen : 0u; left != 0u; left &= left - 1u) {
-            const int i = findLSB(left);
-            const vec2 p = ss_project(i, from), q = ss_project(i, to);
-            backs[i] += ss_edge_area(p, q);
-            if (SS_SPARSE)
-                touched |= uint(ss_edge_touches(p, q)) << i;
-            rounds++;
-        }
-        edges += uint(sides != 0u);
-        sides &= sides - 1u;
     }
-    return (rows | todo | sides) == 0u;
+    return (rows | todo) == 0u;
 }
 
 #endif

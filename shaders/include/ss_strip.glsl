@@ -55,43 +55,51 @@ uint ss_fill_strip(ss_packet p, bool one, ss_grid grid, ss_grid blocks, bool in_
     const int first_quad = first_x >> 2, end_quad = (last_x >> 2) + 1;
     const uint quads = ((1u << end_quad) - 1u) & ~((1u << first_quad) - 1u);
     uint unknown_rows = 0u;
-    int j = 0;
-    while (j <= count) {
-        // A row of blocks, then its rows of samples.
-        const int block_y = y0 + j >> 2, next = min((block_y + 1 << 2) - y0, count + 1);
-        const int end_block = in_blocks && y0 + j <= hi.y && y0 + next > lo.y ? end_quad : first_quad;
+    for (int block_y = y0 >> 2; 4 * block_y <= y0 + count; block_y++) {
+        // A row of blocks, then its four rows of samples side by side: on the software driver rounds of loops cost more than rows
+        // that need not be looked at.
+        const int first_y = 4 * block_y, first = max(first_y, max(lo.y, y0)), last = min(first_y + 3, min(hi.y, y0 + count));
+        const int end_block = in_blocks && first <= last ? end_quad : first_quad;
         ss_strip_blocks b = ss_test_blocks(p, blocks, ivec2(x0 >> 2, block_y), first_quad, end_block, 4 * spacing);
         ss_visited += uint(end_block - first_quad);
-        b.mixed = in_blocks ? b.mixed : quads;
-        const uint full = ss_spread_bits(b.full);
-        for (; j < next; j++) {
-            const int y = y0 + j;
-            const bool inside = y >= lo.y && y <= hi.y;
-            const ss_row row = ss_begin_row(p, ss_sample_axis(y, grid.level, last_texel.y), one);
-            const uint base = (grid.depths + uint(clamp(y, 0, grid.last.y)) * grid.row) / 4u;
-            uint bits = full, unknown = 0u;
-            for (uint todo = inside ? b.mixed & quads : 0u; todo != 0u; todo &= todo - 1u) {
-                const int q = findLSB(todo), x = x0 + 4 * q;
-                const vec4 at = vec4(x) + vec4(0.0, 1.0, 2.0, 3.0);
-                vec4 g, u;
+        b.mixed = in_blocks ? b.mixed & quads : first <= last ? quads : 0u;
+        ss_visited += uint(max(last - first + 1, 0) * 4 * bitCount(b.mixed));
+        ss_row row[4];
+        uint base[4], bits[4], unknown[4];
+        [[unroll]] for (int i = 0; i < 4; i++) {
+            const int y = clamp(first_y + i, 0, grid.last.y);
+            row[i] = ss_begin_row(p, ss_sample_axis(first_y + i, grid.level, last_texel.y), one);
+            base[i] = (grid.depths + uint(y) * grid.row) / 4u;
+            bits[i] = ss_spread_bits(b.full);
+            unknown[i] = 0u;
+        }
+        for (uint todo = b.mixed; todo != 0u; todo &= todo - 1u) {
+            const int q = findLSB(todo), x = x0 + 4 * q;
+            const vec4 at = vec4(x) + vec4(0.0, 1.0, 2.0, 3.0);
+            const vec4 u = SS_SAMPLED ? min(at * float(spacing) + float(spacing >> 1), vec4(last_texel.x)) + 0.5
+                                      : (at + 0.5) * float(spacing);
+            [[unroll]] for (int i = 0; i < 4; i++) {
+                vec4 g;
                 if (SS_SAMPLED) {
-                    g = ss_depth_quad_at(base + uint(x) / 4u);
-                    u = min(at * float(spacing) + float(spacing >> 1), vec4(last_texel.x)) + 0.5;
+                    g = ss_depth_quad_at(base[i] + uint(x) / 4u);
                 } else {
-                    for (int i = 0; i < 4; i++)
-                        g[i] = ss_sample_depth(grid, ivec2(x + i, y));
-                    u = (at + 0.5) * float(spacing);
+                    for (int k = 0; k < 4; k++)
+                        g[k] = ss_sample_depth(grid, ivec2(x + k, clamp(first_y + i, 0, grid.last.y)));
                 }
                 uint every, some;
-                ss_quad_status(p, row, u, g, one, every, some);
-                bits |= every << (4 * q);
-                unknown |= some << (4 * q);
-                ss_visited += 4u;
+                ss_quad_status(p, row[i], u, g, one, every, some);
+                bits[i] |= every << (4 * q);
+                unknown[i] |= some << (4 * q);
             }
-            unknown &= columns;
-            ss_strip[j] = inside ? bits & columns : 0u;
-            ss_strip_unknown[j] = unknown;
-            unknown_rows |= uint(unknown != 0u) << j;
+        }
+        [[unroll]] for (int i = 0; i < 4; i++) {
+            const int y = first_y + i, j = y - y0;
+            const bool inside = y >= first && y <= last;
+            if (j >= 0 && j <= count) {
+                ss_strip[j] = inside ? bits[i] & columns : 0u;
+                ss_strip_unknown[j] = inside ? unknown[i] & columns : 0u;
+                unknown_rows |= uint(inside && (unknown[i] & columns) != 0u) << j;
+            }
         }
     }
     return unknown_rows;
