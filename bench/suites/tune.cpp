@@ -71,10 +71,15 @@ std::array<double, 3> fit(const std::vector<Sample> &samples)
     return best;
 }
 
-// Packets of all pixels, or of every second one, when equation 6 takes a projection to cost some share of an edge.
-std::string with_costs(const std::string &sparse, const std::string &share)
+Technique in_packets(const std::string &packet)
 {
-    return "contour budget=32 packet=4x4 sparse=" + sparse + " cost=0,1," + share;
+    return technique_of("contour budget=32 packet=" + packet);
+}
+
+// Packets of all pixels, or of every second one, when equation 6 takes a projection to cost some share of an edge.
+Technique with_costs(const std::string &sparse, const std::string &share)
+{
+    return technique_of("contour budget=32 packet=4x4 sparse=" + sparse + " cost=0,1," + share);
 }
 
 } // namespace
@@ -92,15 +97,15 @@ void run_tune(Bench &bench)
     }
     std::vector<Technique> techniques;
     for (const std::string &packet : packets)
-        techniques.push_back(technique_of("contour budget=32 packet=" + packet));
+        techniques.push_back(in_packets(packet));
     const std::vector<std::string> shares = {"0.5", "0.2", "0"};
     for (const std::string sparse : {"off", "on"})
         for (const std::string &share : shares)
-            techniques.push_back(technique_of(with_costs(sparse, share)));
+            techniques.push_back(with_costs(sparse, share));
     const std::vector<CaseSource> sources = bench.cases({"balls", "fence"});
     bench.begin_suite("tune", sources.size() * lights.size());
     std::vector<Sample> samples;
-    std::map<std::string, double> over_single; // by packet, or by what has costs of its own
+    std::map<std::map<std::string, std::string>, double> over_single; // by settings
     int measured = 0;
     for (const CaseSource &source : sources)
         for (const double light : lights) {
@@ -119,10 +124,8 @@ void run_tune(Bench &bench)
                     single = ms;
                     measured++;
                 }
-                const bool costs = settings.count("cost") > 0;
-                over_single[costs ? settings.at("sparse") + " " + settings.at("cost") : settings.at("packet")] +=
-                    ms / single;
-                if (!costs && row.stats && row.stats->edges)
+                over_single[settings] += ms / single;
+                if (settings.count("cost") == 0 && row.stats && row.stats->edges)
                     samples.push_back({{static_cast<double>(row.stats->visited), static_cast<double>(row.stats->edges),
                                         static_cast<double>(row.stats->primitives)},
                                        1e6 * ms});
@@ -135,11 +138,12 @@ void run_tune(Bench &bench)
     for (int i = 0; i < 3; i++)
         bench.report().figures.push_back({names[i], "all", cost[i], "nanoseconds of the whole device"});
     for (const std::string &packet : packets)
-        bench.report().figures.push_back({"time_of_packets_over_single_pixels", "all", over_single[packet] / measured,
+        bench.report().figures.push_back({"time_of_packets_over_single_pixels", "all",
+                                          over_single[in_packets(packet).settings] / measured,
                                           "packet=" + packet + ", mean over cases and lights"});
     for (const std::string sparse : {"off", "on"})
         for (const std::string &share : shares)
             bench.report().figures.push_back({"time_by_cost_of_projections", "all",
-                                              over_single[sparse + " 0,1," + share] / measured,
+                                              over_single[with_costs(sparse, share).settings] / measured,
                                               share + " edges, sparse=" + sparse});
 }
